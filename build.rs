@@ -28,7 +28,7 @@ fn main() {
     }
     // Equal functions are stored once.
     let icf = "-Wl,--icf=all";
-    // The table of addresses for the loader is stored as a bit map.
+    // The relative relocations for the loader are stored as a bit map (DT_RELR).
     let packed = "-Wl,-z,pack-relative-relocs";
     for argument in [Some(icf), loader_unpacks().then_some(packed)].into_iter().flatten() {
         if linker_accepts(argument) {
@@ -37,8 +37,8 @@ fn main() {
     }
 }
 
-/// Whether the loader of the C library knows packed addresses. The loader of glibc knows them from version 2.36 on. A
-/// library for another system is not packed.
+/// Whether the loader of the C library supports packed relative relocations (DT_RELR). The loader of glibc supports
+/// them from version 2.36 on. A library for another target is not packed.
 fn loader_unpacks() -> bool {
     let native = env::var("TARGET").is_ok_and(|target| Ok(target) == env::var("HOST"));
     native && glibc().is_some_and(|version| version >= (2, 36))

@@ -23,7 +23,7 @@
    command. */
 #define PATIENCE 0.08
 
-/* Largest sum of the differences between the joint angles of a finger at rest and its target, rad. */
+/* A finger has reached its target if the absolute errors of its three joint angles add up to at most this, rad. */
 #define FARTHEST 0.03
 
 struct drives {

@@ -1,4 +1,4 @@
-/* High.c - the planner of Figure 6 of the report, completed.
+/* High.c - the planner of Figure 6 of COINS Technical Report 90-48, completed.
 
    make run        (in this folder) compiles it and runs it on the simulated hand
 

@@ -23,7 +23,9 @@
 #define SINE 0.8660254                  /* of 60 degrees */
 #define TURN 6.2831853                  /* rad */
 
-/* The ball on the table, the contacts around its equator, and the places of the fingers, as in Grasp.c, cm. */
+/* As in Grasp.c: the position of the ball on the table, cm; the directions from its vertical axis to the contacts
+   around its equator; the places of the fingers in the palm, cm; and -1 for the thumb, which is turned by 180 degrees
+   about z. */
 static const double Start[3] = {0.0, 0.0, 10.5};
 static const double Contact[3][2] = {{SINE, HALF}, {-SINE, HALF}, {0.0, -1.0}};
 static const double Base[3][2] = {{3.0, 3.5}, {-3.0, 3.5}, {0.0, -3.5}};

@@ -19,7 +19,7 @@ struct finger_physics {
     int braked;                         /* 1 while the motors cannot turn */
 };
 
-/* R of eq. 14 of the report: the moment arms of the tendons at the joints, m. */
+/* R of eq. 14 of COINS Technical Report 90-48: the moment arms of the tendons at the joints, m. */
 static const double Arms[3][4] = {
     {-0.0109, 0.0062, 0.0062, -0.0109}, {0.0109, 0.0062, -0.0062, -0.0109}, {0, 0.0062, -0.0062, 0}};
 

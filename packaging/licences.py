@@ -31,7 +31,8 @@ REMOTE_FILE = "third-party-licences-remote.txt"
 
 def contained(metadata, owners):
     """Returns the crates that are linked into these packages, and procedural macros with their dependencies."""
-    # The metadata has the crates of all features; the tree has those of the enabled ones.
+    # The metadata has the crates that any package of the workspace needs, including those for build scripts and tests.
+    # The tree has only the normal dependencies of these packages with their enabled features.
     command = ["cargo", "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"]
     command += [argument for owner in owners for argument in ("--package", owner)] + ["--target", TARGET]
     lines = subprocess.check_output(command, cwd=ROOT, text=True).splitlines()

@@ -110,7 +110,7 @@ proptest! {
             prop_assert_eq!((message.address, message.sequence, message.frame.kind()), (address, sequence, kind));
             let again = WireFrame::new(&message);
             prop_assert_eq!(again.as_bytes().len(), wire.len());
-            // Reserved bits of the flags are dropped. All other bits must be restored.
+            // The flags of a Command have reserved bits, which are dropped. All other frames must be restored.
             if kind != Kind::Command {
                 prop_assert_eq!(again.as_bytes(), &wire[..]);
             }

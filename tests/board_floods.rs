@@ -26,7 +26,7 @@ struct Flood {
     sequence: u8,
     /// Type of the request that triggers the flood.
     begins_with: Option<Kind>,
-    /// Whether that frame gets the sequence number of every request of this type, as an answer does.
+    /// Whether that frame gets the sequence number of each request of the type `begins_with`, as an answer does.
     answers_all: bool,
     begun: bool,
     answers: Vec<u8>,

@@ -182,7 +182,9 @@ fn status_bits() {
         ("torque clipped", Status::TORQUE_CLIPPED),
         ("damaged input", Status::DAMAGED_INPUT),
     ];
-    for (row, (name, bit)) in table("| bit | name |").iter().zip(named) {
+    let rows = table("| bit | name |");
+    assert_eq!(rows.len(), named.len());
+    for (row, (name, bit)) in rows.iter().zip(named) {
         assert_eq!(row[1], name);
         assert_eq!(Status(1 << row[0].parse::<u16>().unwrap()), bit);
     }

@@ -85,8 +85,8 @@ fn a_limit_beyond_the_boards_is_refused() {
 }
 
 /// docs/board-protocol.md allows a shortest watchdog time of up to 20 ms. A board that needs more than the configured
-/// time gets its shortest time, and every other board gets the configured time. The configuration must permit a
-/// shortest time of more than 20 ms.
+/// time gets its shortest time, and every other board gets the configured time. A board whose shortest time is more
+/// than 20 ms is refused, unless the configured time is at least as long.
 #[test]
 fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
     let terms = terms(4.75, 1.0, 2.34);

@@ -141,7 +141,7 @@ fn the_reference_firmware_settles_three_fingers() {
 #[test]
 fn the_reference_firmware_passes_the_vectors_and_survives_noise() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    // On Debian only gcc has the sanitizers installed with it.
+    // On Debian, the sanitizers are installed with gcc, but not with clang.
     if tools::available("gcc", "under gcc, with sanitizers") {
         let sanitize = "SANITIZE=-fsanitize=address,undefined -fno-sanitize-recover=all";
         make(folder.path(), &["check", "CC=gcc", sanitize]);

@@ -9,7 +9,7 @@ use c::{
 };
 use std::fs;
 
-/// Every way to tell the header the type of the arrays.
+/// Both element types of a planner's arrays, each without and with SUN2XP_NO_GENERIC.
 const CHOICES: &[&[&str]] = &[
     &["-DREAL=float"],
     &["-DREAL=double"],
@@ -171,7 +171,7 @@ fn other_arguments_do_not_compile() {
         for (compilers, standards, name) in [(c_compilers(), C, "wrong.c"), (cpp_compilers(), CPP, "wrong.cpp")] {
             let source = bench.write(name, &planner);
             for compiler in compilers {
-                // Otherwise clang stops at the twentieth error.
+                // By default, clang stops at the twentieth error.
                 let all: &[&str] = if compiler.starts_with("clang") { &["-ferror-limit=0"] } else { &[] };
                 for standard in standards {
                     let flags = with(&[mode, all, &[standard, "-w", "-fsyntax-only"]]);

@@ -177,8 +177,8 @@ fn compiles_with_a_window(planner: &str) {
     in_every_dialect(&bench, &[&folder, "-DWINDOW_LAST"], &sources);
 }
 
-/// Planners write the members of structs themselves, so sun2xp.h cannot hide its names from their macros, as Sun2Xp.h
-/// does. The macros of X11, and planners' macros such as Pos, have capital letters. Other macros of planners, such as
+/// Planners write the members of structs themselves, so sun2xp.h, unlike Sun2Xp.h, cannot hide its names from their
+/// macros. The macros of X11, and planners' macros such as Pos, have capital letters. Other macros of planners, such as
 /// i, have one letter.
 #[test]
 fn names_of_the_header_with_handles_are_lower_case_and_longer_than_a_letter() {

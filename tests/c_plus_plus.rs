@@ -45,7 +45,7 @@ fn the_header_survives_late_callbacks_and_refused_closes() {
 
 /// Uses events, groups, paths and reflexes, and moves a hand to another variable.
 #[test]
-fn every_part_of_the_header_serves() {
+fn every_part_of_the_header_works() {
     let Some(compiler) = cpp_compiler() else { return };
     let bench = Bench::new();
     let program = bench.build(compiler, &[STRICT, &["-std=c++17"]].concat(), &["parts.cpp"]);

@@ -27,14 +27,21 @@ fn succeed(sources: &[&str]) {
     bench().succeed(STRICT, sources);
 }
 
-#[test]
-fn a_refusal_on_a_closed_pipe_leaves_the_planner_alive() {
-    succeed(&["broken_pipe.c"]);
+/// The configuration of this program names no port, so OpenHand prints a message.
+fn succeed_with_message(sources: &[&str]) {
+    let bench = bench();
+    fs::write(bench.path().join("named.toml"), "[hand]\nrate = 1000\n").expect("a configuration file");
+    bench.succeed(STRICT, sources);
 }
 
 #[test]
-fn a_refusal_into_a_file_of_the_largest_size_leaves_the_planner_alive() {
-    succeed(&["full_file.c"]);
+fn messages_on_a_closed_pipe_leave_the_planner_alive() {
+    succeed_with_message(&["broken_pipe.c"]);
+}
+
+#[test]
+fn messages_into_a_file_of_the_largest_size_leave_the_planner_alive() {
+    succeed_with_message(&["full_file.c"]);
 }
 
 #[test]

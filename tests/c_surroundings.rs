@@ -30,7 +30,7 @@ fn a_planner_that_closes_every_descriptor_gets_a_fault_and_keeps_its_files_intac
 
 #[test]
 fn a_planner_with_few_descriptors_that_closes_all_gets_a_fault_and_keeps_its_files_intact() {
-    // No descriptor of the library is far from the planner's first ones.
+    // With this limit, all descriptors of the library are below 60. So the planner also closes these descriptors.
     closes_descriptors("60", "255");
 }
 
@@ -83,7 +83,8 @@ fn hostile_names() -> [Vec<u8>; 4] {
     ]
 }
 
-/// Asserts that one line begins with `beginning`, is shown unchanged by a terminal, and has a readable length.
+/// Asserts that `text` is a single line that begins with `beginning`, is shown unchanged by a terminal, and has a
+/// readable length.
 fn assert_one_line(text: &str, beginning: &str) {
     let line = text.strip_suffix('\n').unwrap_or(text);
     assert!(line.len() < 900, "{} bytes: {:?}", line.len(), line.chars().take(200).collect::<String>());

@@ -48,7 +48,8 @@ proptest! {
         prop_assert!(found.tensions.min() >= MINIMUM);
         prop_assert!(within(&found.tensions, 1e-9), "{} beyond {bounds}", found.tensions);
         prop_assert!((0.0..=1.0).contains(&found.scale));
-        // Finds the largest scale by bisection, because the least tensions grow with the scale.
+        // The least tensions are convex functions of the scale, and are within the bounds at a scale of 0. So they are
+        // within the bounds at every scale up to the largest one, and bisection finds it.
         let largest = |tolerance: f64| {
             let fits = |scale: f64| within(&least(&tendons, torque * scale), tolerance);
             let (mut low, mut high) = (0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Tests A^-1 against the tip formula: over the workspace, at its borders and outside.
+//! Tests the inverse kinematics against the forward kinematics: over the workspace, at its borders and outside.
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -17,8 +17,8 @@ fn configured() -> InverseKinematics {
     InverseKinematics::new(LINKS, ConfiguredFinger::default().joint_limits())
 }
 
-/// Joint angles within the limits of the default finger. Of the two elbows, which differ in the sign of joint 2, these
-/// limits admit only one, and only some of the solutions with this elbow.
+/// Joint angles within the limits of the default finger. The two elbow solutions for a tip position differ in the sign
+/// of joint 2. The limits admit only positive angles of joint 2, and only some of the solutions with a positive angle.
 fn admissible() -> impl Strategy<Value = Vector3<f64>> {
     let degrees = (-60.0..60.0f64, -30.0..100.0f64, 5.0..120.0f64);
     degrees.prop_map(|(a, b, c)| Vector3::new(a, b, c).map(f64::to_radians))
@@ -35,8 +35,8 @@ proptest! {
         prop_assert!((found - theta).amax() < 1e-9, "{found} {theta}");
     }
 
-    /// Every pose is found again, with both elbows and both directions of joint 0, and every solution has its tip at
-    /// the target.
+    /// Every pose is among the solutions of its tip position, whatever its elbow and the direction of joint 0. The
+    /// solutions contain both elbows, and each solution has its tip at the target.
     #[test]
     fn every_pose_is_among_the_solutions(theta in anywhere()) {
         prop_assume!(LINKS.reach(&theta).abs() > 1e-3 && theta[2].sin().abs() > 1e-3);

@@ -130,7 +130,7 @@ fn a_pushed_ball_rolls_and_comes_to_rest() {
     assert!(object.velocity().norm() < 1e-9 && object.angular_velocity().norm() < 1e-9, "{}", object.velocity());
 }
 
-/// The energy of a board's fingers and of its object, and their energy of motion, J.
+/// The total energy and the kinetic energy of a board's fingers and object, J.
 fn energies(board: &mut SimulatedBoard, hand: &Configuration) -> (f64, f64) {
     let (mut whole, mut kinetic) = (0.0, 0.0);
     let mut tips = NOBODY;
@@ -181,8 +181,8 @@ proptest! {
             board.advance(time);
             energies(&mut board, &hand)
         };
-        // The fastest contact has 2000 rad/s. With steps of 0.1 ms, its energy error is at most 0.1 of the swinging
-        // energy (see `assert_gains_no_energy`).
+        // The fastest contact oscillates at 2000 rad/s. With steps of 0.1 ms, its energy error is at most 0.1 of the
+        // swinging energy (see `assert_gains_no_energy`).
         assert_gains_no_energy(start, step, 0.1, steps);
     }
 

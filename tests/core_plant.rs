@@ -70,7 +70,7 @@ fn tendons_pull_and_never_push() {
 
 #[test]
 fn inertia_of_the_straight_finger_is_that_of_rods() {
-    // Straight links as thin as needles that turn about joint 0 have the inertia of textbook rods end to end.
+    // About joint 0, straight links of radius 0 have the textbook inertia of thin rods that lie end to end.
     let mut finger = frictionless();
     finger.simulation.link_radii = [0.0; 3];
     finger.simulation.start_degrees = [0.0, 0.0, 0.0];

@@ -1,4 +1,4 @@
-//! Tests both stiffness laws and every contact type against the definitions of section 4.2.
+//! Tests both stiffness laws and every contact type against the definitions in section 4.2 of the report.
 
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector6};
 use proptest::prelude::*;
@@ -84,7 +84,8 @@ proptest! {
         prop_assert!((LINKS.tip_rotation(&theta) * Vector3::new(0.0, 0.0, 4.0) - link).amax() < 1e-12);
     }
 
-    /// Eq. 6 for D = 4: K_theta = J_c^T K J_c with the 4 x 3 Jacobian of the tip and the rotation about the normal.
+    /// Eq. 6 for D = 4: K_theta = J_c^T K J_c, where J_c is the 4 x 3 Jacobian of two motions: the translation of the
+    /// tip, and its rotation about the normal.
     #[test]
     fn soft_finger_is_eq_6_with_its_4_by_3_jacobian(
         theta in theta(), root in prop::array::uniform16(-1.5..1.5f64), n in normal(),
@@ -102,8 +103,8 @@ proptest! {
         prop_assert!((law().spring(&point.into(), &theta) - expected * away).amax() < 1e-9);
     }
 
-    /// tau = J^T f with the force of the definition, at any deflection. If the tip is at its anchor, the torque
-    /// is zero.
+    /// tau = J^T f at any deflection, where f = Kx (x_d - x) is the force of the spring on the tip. If the tip is at
+    /// its anchor, the torque is zero.
     #[test]
     fn exact_law_is_the_spring_at_any_deflection(
         theta in theta(), desired in theta(), root in prop::array::uniform9(-1.5..1.5f64),
@@ -138,8 +139,8 @@ proptest! {
         }
     }
 
-    /// If joint 2 is bent to the side opposite to the anchor's, it is pushed toward the anchor, although the tip is at
-    /// the anchor already.
+    /// If joint 2 is bent to the opposite side from the set point, a torque pushes it toward the set point, although
+    /// the tip is already where the set point puts it.
     #[test]
     fn the_other_joint_solution_is_not_at_rest(theta in theta()) {
         prop_assume!(theta[2] > 0.2);

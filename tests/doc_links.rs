@@ -1,5 +1,5 @@
-//! Every link of the documentation to a file of the project, and to a heading in it, leads somewhere. No page contains
-//! the marks of a merge that was not finished.
+//! Checks the links of the documentation to files of the project: each file exists, and so does the heading if the link
+//! names one. Checks that no page contains the marks of an unfinished merge.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -113,8 +113,8 @@ fn state_feedback_is_passive_and_figure_10_is_not() {
     assert!(figure_10 < -0.02 && frequency < 20.0, "{figure_10} at {frequency} Hz");
 }
 
-/// The worst direction of Figure 10 at a low frequency: a force along it receives energy, and the same force receives
-/// none from a finger with state feedback.
+/// In the direction in which a finger with the controller of Figure 10 is least passive, its tip gives energy to a
+/// sinusoidal force of low frequency. The tip of a finger with state feedback takes energy from the same force.
 #[test]
 fn a_tip_that_is_not_passive_gives_energy_to_a_force() {
     let frequency = 3.0;

@@ -1,4 +1,4 @@
-//! `docs/events.md` contains the table of the kinds of events of the library.
+//! `docs/events.md` contains the library's table of event kinds.
 
 use std::path::Path;
 use std::{env, fs};

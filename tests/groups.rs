@@ -16,7 +16,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Schedule;
 use sun2xp::simulated::SimulatedCable;
 
-/// Number of groups that each test with random moments sends.
+/// Number of groups in each test in which the planner sends at random moments.
 const GROUPS: u32 = 10_000;
 
 /// Pseudo-random numbers (xorshift).

@@ -13,7 +13,7 @@ const RADIUS: f64 = 1.5;
 /// Position of the ball on the table, in the palm's frame, cm. The palm faces down.
 const START: Vector3<f64> = Vector3::new(0.0, 0.0, 10.5);
 
-/// Depth of the anchors below the surface of the ball, cm.
+/// Depth of the anchors (the rest positions of the fingertips' springs) below the surface of the ball, cm.
 const SQUEEZE: f64 = 0.8;
 
 fn around_a_ball() -> Configuration {

@@ -7,7 +7,7 @@ use sun2xp::model::{FingerNumber, Fingers};
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Defect, Pace, SimulatedBoard, SimulatedPort, WiredPart};
 
-/// Opens a hand of finger 2, whose board has these defects, with the self-test.
+/// Opens a hand that has only finger 2, with the self-test at open. The simulated finger has these defects.
 fn opened(defects: &[Defect]) -> (SimulatedPort, Result<Hand, HandError>) {
     let mut configuration = Configuration::default();
     (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);

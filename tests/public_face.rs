@@ -1,5 +1,6 @@
-//! The public interface of the crate: the names without the feature `internals`, which are listed in
-//! docs/abi/rust-names, and an example that runs. To renew the list: SUN2XP_WRITE_NAMES=1 cargo test --test public_face
+//! Tests the public interface of the crate: docs/abi/rust-names lists all names that the crate exports without the
+//! feature `internals`, and the example of the crate's page runs. To renew the list:
+//! SUN2XP_WRITE_NAMES=1 cargo test --test public_face
 
 use std::fs;
 use std::path::{Path, PathBuf};

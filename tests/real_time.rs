@@ -73,7 +73,7 @@ fn a_planner_without_memlock_gets_its_hand_and_a_message() {
     assert!(!printed.contains("locked"), "{printed}");
 }
 
-/// The message names an amount. The highest rate needs the most memory.
+/// The message names one amount for all rates. The hand opens at the highest rate, which needs the most memory.
 #[test]
 fn the_memlock_limit_of_the_message_suffices_at_every_rate() {
     let message = MissingPermission::Memory(io::Error::from_raw_os_error(libc::ENOMEM)).to_string();
@@ -108,7 +108,7 @@ fn may_lock(bytes: usize) -> bool {
 }
 
 /// Returns the most memory that is locked while a hand opens, bytes. The servos lock their memory before their first
-/// cycle. A busy machine may fault a finger at the highest rate after that, so the hand need not open.
+/// cycle. Afterwards a busy machine may cause a fault at the highest rate, so the test does not need the hand to open.
 fn most_locked_while<T>(open: impl FnOnce() -> T) -> usize {
     let opened = AtomicBool::new(false);
     thread::scope(|scope| {

@@ -64,8 +64,8 @@ fn note(_: &Event, _: u64) {
     EVENTS.fetch_add(1, Relaxed);
 }
 
-/// Sends groups until finger 1 has run `end` cycles in total. Groups wait in the servo until their period begins.
-/// Returns the number of groups that the hand has taken.
+/// Sends groups until finger 1 has run `end` cycles in total. A group waits in the servo until the period in which it
+/// takes effect. Returns the number of groups that the hand has taken.
 fn send_groups(hand: &Hand, end: u64) -> usize {
     let mut taken = 0;
     for step in 0u32.. {
@@ -88,7 +88,7 @@ fn send_paths(hand: &Hand, end: u64) -> usize {
     for step in 0u32.. {
         let joints = [0.1, 0.5, 1.0 + 0.1 * f64::from(step % 7)];
         let pose = |time| PathPose { time, pose: Pose::Joints(joints), stiffness: None };
-        // A path that begins in motion may be too fast.
+        // A path that begins while the finger moves may be too fast. The hand then refuses it.
         taken += usize::from(hand.send_path(1, &[pose(0.5), pose(0.9)], None).is_ok());
         let _ = hand.keep_valid(1, Validity::hold_after(Some(Duration::from_secs(1))));
         if hand.report(1).expect("a report").losses.cycles >= end {
@@ -146,7 +146,7 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while a finger is adjusted");
     assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
 
-    // A finger must not allocate either while it is calibrated and its controller is replaced.
+    // A servo must not allocate while its finger is calibrated and the finger's controller is replaced.
     hand.adjust(2, "zeroing.method = \"pose\"").expect("adjusted");
     hand.zero(2, |_| {}).expect("zeroed");
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads, calibrating");

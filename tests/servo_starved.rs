@@ -1,5 +1,5 @@
-//! A servo and its simulated board on a machine that delays the servo, the board and the carrier: the part of the
-//! system that moves bytes between them. The machine's clock is simulated too.
+//! A servo and its simulated board on a machine that delays the servo, the board and the carrier. The carrier is the
+//! part of the system that moves bytes between the servo and the board. The machine's clock is simulated too.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]
@@ -138,7 +138,7 @@ struct Rig {
 }
 
 impl Rig {
-    /// `open_timeout_ms` is the time by the machine's clock that the finger may take to come under tension.
+    /// The finger may take `open_timeout_ms`, measured by the machine's clock, to come under tension.
     fn new(seed: u64, open_timeout_ms: u32) -> Self {
         let mut configuration = Configuration::default();
         configuration.hand.open_timeout_ms = open_timeout_ms;

@@ -24,7 +24,8 @@ fi
 struct Source {
     folder: TempDir,
     root: PathBuf,
-    /// A program that one test writes must not be open in a process that another test starts.
+    /// Lets the tests take turns. Otherwise a process that another test starts could have the program of this test open
+    /// for writing, and the system would refuse to execute the program (ETXTBSY).
     _turn: MutexGuard<'static, ()>,
 }
 

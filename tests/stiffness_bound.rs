@@ -41,8 +41,8 @@ const RATES: usize = 40;
 /// at least 3 cm from the axis of joint 0, because no stiffness of a tip on this axis holds joint 0.
 const POSES: usize = 4;
 
-/// Tests the initial Kx of a finger and its default bound, each with the least damping, the controller's own and the
-/// most damping.
+/// Tests the initial Kx of a finger and its default bound, each with the least damping, with the damping that the
+/// controller chooses, and with the most damping.
 fn stable_at_every_rate(scheme: Scheme) {
     let finger = finger(scheme);
     let links = finger.links();

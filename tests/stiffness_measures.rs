@@ -161,9 +161,9 @@ fn a_pose_that_supports_less_stiffness_shows_its_scale_and_no_error() {
     assert!(found.scale < 0.97 && found.error < 0.01, "{} of {}", found.error, found.scale);
 }
 
-/// A motor constant that is wrong by 20 % is harmless in the conversion of a tension to a torque. M in (RM)^-T is
-/// geometry, and must not contain the motor constant. If it does, the measured joint angles are 25 % too large
-/// (1 / 0.8), and the tip is displaced.
+/// A motor constant that is wrong by 20 % is harmless in the conversion of a tension to a torque. The matrix (RM)^-T
+/// converts motor angles to joint angles. Its M consists of motor radii, and must not contain the motor constant. If it
+/// does, the measured joint angles are 25 % too large (1 / 0.8), and the tip is displaced.
 #[test]
 fn a_motor_model_in_the_kinematics_is_detected() {
     let case = case(Scheme::Figure11);

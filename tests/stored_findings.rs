@@ -29,7 +29,8 @@ enum What {
     Bound,
 }
 
-/// A bound of finger 1 or 3 would become invalid with the friction that other workers store.
+/// Only finger 2 gets a bound, because no worker stores its friction. A bound of finger 1 or 3 would become invalid
+/// when another worker stores the friction of that finger.
 const WORKERS: [Worker; 6] = [
     Worker { finger: FingerNumber::ONE, what: What::Zeros },
     Worker { finger: FingerNumber::ONE, what: What::Friction },

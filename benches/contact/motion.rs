@@ -35,7 +35,7 @@ impl Motion {
         self.random.next_u32() as f64 / f64::from(u32::MAX)
     }
 
-    /// Returns the joint angles of the next cycle, rad. `speed` is the fastest joint rate of new lines, rad/s, and
+    /// Returns the joint angles of the next cycle, rad. The joint rates of new lines are at most `speed`, rad/s.
     /// `period` is the length of a cycle, s.
     pub fn set_point(&mut self, speed: f64, period: f64) -> Vector3<f64> {
         if self.rest > 0 {

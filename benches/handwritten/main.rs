@@ -100,7 +100,7 @@ impl<'a> Plain<'a> {
     }
 }
 
-/// Returns the run time of this thread, ns. Other work on the machine does not count.
+/// Returns the CPU time of this thread, ns. Other work on the machine does not count.
 fn thread_time() -> u64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: `time` is writable, and the clock exists on every Linux.

@@ -1,8 +1,8 @@
 /*
  * One servo step of Figures 9 and 10, from counts to motor torques and report, as handwritten C for one finger.
  * The library's step is compared with it. This step has the arithmetic and the features of Controller::cycle for a
- * fingertip that is a spring with the report's law. Gravity compensation is off in both. This step does not estimate
- * the contact force, which the library does every 5 ms.
+ * fingertip that is a spring with the report's law. Gravity compensation is off in both. The library also estimates the
+ * contact force every 5 ms. This step does not.
  *
  * The units are those of the library: rad, cm, N, N cm, s. parameters.rs and by_hand.rs repeat the structures of
  * structures.h.

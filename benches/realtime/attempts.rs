@@ -30,8 +30,8 @@ impl Attempts {
         None
     }
 
-    /// Checks that every entry has at least one measurement that has succeeded. An entry has a name and the number of
-    /// these measurements.
+    /// Checks that every entry has at least one measurement that has succeeded. An entry is a name and the number of
+    /// measurements that have succeeded.
     ///
     /// # Errors
     /// Returns the names of the entries without a measurement that has succeeded.

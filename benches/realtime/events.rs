@@ -162,7 +162,7 @@ fn turn(kind: Kind, seconds: u64) -> Result<Turn, Failure> {
     if measured.len() != FINGERS {
         return Err("a servo has measured nothing".into());
     }
-    // The servo of a finger that has stopped does less work, so its wake-ups do not count.
+    // The servo of a finger that has stopped does less work, so a measurement with such a finger fails.
     (1..).zip(&stages).try_for_each(|(finger, stage)| under_control(finger, stage))?;
     Ok((measured, taken, lost))
 }

@@ -216,7 +216,7 @@ pub enum Cause {
     Library,
 }
 
-/// A computation with a run time below this part of a period did not make the cycle late.
+/// A computation whose run time is at most this part of a period does not count as the cause of a late cycle.
 const COMPUTING: f64 = 0.05;
 
 /// Returns the cause of a late cycle. `pauses` are the pauses of threads whose priority is above that of all servos.

@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let own = print_fingers(&ran, period, &pauses);
     print_machine(&machine);
     println!(
-        "\n{:.1} minutes at {:.0} Hz; {} pauses of a core above 50 us.\n",
+        "\n{:.1} minutes at {:.0} Hz; {} pauses of a core longer than 50 us.\n",
         arguments.minutes,
         configuration.hand.rate,
         pauses.count()

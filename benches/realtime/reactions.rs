@@ -3,8 +3,8 @@
 //! the fingers in other threads.
 //!
 //! The board tells which motor command is in force when the contact begins. The records of the servos tell which
-//! command is the first one with the set point of the reaction. A delay is the difference
-//! of the period numbers of these two commands, so it includes the periods that a late servo skips.
+//! command is the first one with the set point of the reaction. A delay is the difference of the period numbers of
+//! these two commands, so it includes the periods that a late servo skips.
 
 use crate::Failure;
 use crate::attempts::Attempts;
@@ -50,8 +50,9 @@ const BOARD_PRIORITY: u8 = 20;
 const WATCH_PRIORITY: u8 = 90;
 
 /// The machine counts as paused during a delay if the pauses of one core within the delay add up to at least this
-/// time, ns. A core pauses while it does not run its watch thread, whose priority is above that of all servos. Command
-/// and Reply take a part of each period. A board or a servo that loses this much of the rest can miss its period.
+/// time, ns. A core pauses while it does not run its watch thread, whose priority is above that of all servos. The
+/// transmission of Command and Reply takes a part of each period. If a board or a servo loses this much of the
+/// remaining time, it can miss its period.
 const PAUSE: u64 = PERIOD / 5;
 
 /// Longest time until the fingers are under control.
@@ -63,7 +64,7 @@ const TOUCHED: FingerNumber = FingerNumber::TWO;
 /// Set point before each contact, rad.
 const POSE: Vector3<f64> = Vector3::new(0.0, 0.5, 0.8);
 
-/// Force along the last link that presses the element, N.
+/// Force that presses the element, along the last link, N.
 const PRESS: f64 = 0.3;
 
 /// Duration of a contact, and of the rest after it.
@@ -117,7 +118,7 @@ impl Default for Measured {
 
 impl Measured {
     /// Starts three fingers and touches one of them until `wanted` contacts were made, including those of earlier
-    /// fingers.
+    /// calls.
     fn with_new_fingers(&mut self, wanted: u32) -> Result<(), Failure> {
         let (configuration, ended) = (configuration(), Arc::new(AtomicBool::new(false)));
         let (mut members, servos) = start(&configuration, &ended)?;

@@ -33,8 +33,8 @@ pub struct ReaderArguments {
     write: bool,
 }
 
-/// One side of the comparison: with readers, or without. Each distribution is that of the wake-up latencies, us, of one
-/// finger in one measurement.
+/// One side of the comparison: with readers, or without. Each entry is the distribution of the wake-up latencies of one
+/// finger in one measurement, us.
 #[derive(Default)]
 struct Side(Vec<Distribution>);
 

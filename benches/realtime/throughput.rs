@@ -88,8 +88,8 @@ impl Drop for Phase {
     }
 }
 
-/// The result of one finger: cycles with a reply per second, lost replies, and what ended the measurement early. The
-/// error says why nothing was measured.
+/// The result of one finger: the number of cycles per second, without those that lost their replies; the number of lost
+/// replies; and what ended the measurement early, if anything. The error says why nothing was measured.
 pub type Row = Result<(f64, u64, Option<String>), String>;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -34,8 +34,8 @@ pub struct ClosedLoop {
     random: Pcg64,
 }
 
-/// A finger that its controller holds at `pose` as the spring `kx`, and the configuration that the controller uses. The
-/// configuration may differ from the true finger.
+/// A finger that its controller holds at `pose` with the stiffness `kx`. The controller uses the configuration
+/// `belief`, which may differ from the true parameters in `finger`.
 pub struct Held<'a> {
     pub case: &'a Case,
     pub finger: &'a ConfiguredFinger,

@@ -9,9 +9,9 @@ use sun2xp::model::configuration::Surface;
 
 /// Stiffness of the walls, N/cm.
 pub const WALLS: [f64; 3] = [30.0, 100.0, 300.0];
-/// Distance by which the anchor moves toward a wall, and distance to the wall, cm. A spring deflection of 3.5 mm then
-/// presses the tip against the wall.
+/// Distance by which the anchor moves toward a wall, cm. The anchor is then 3.5 mm inside the wall.
 pub const INTO: f64 = 0.4;
+/// Distance of the tip from a wall before the anchor moves, cm.
 pub const OFF: f64 = 0.05;
 
 /// The motion of a finger that was moved into a wall.
@@ -89,7 +89,7 @@ pub fn over_limit(case: &Case) -> OverLimit {
         let mut finger = ClosedLoop::at(case, &pose, Friction::Default, &(Matrix3::identity() * case.bound()));
         finger.set_point.law = Law::Report;
         finger.set_point.joints[1] += 2.0;
-        // While the tension limits take away most of the required torque, joint 0 swings slowly.
+        // Joint 0 swings slowly while the tension limits take away most of the required torque, so this run is long.
         finger.run(3.0);
         let most_on_the_way = finger.most_true;
         finger.reset_extremes();

@@ -2,10 +2,10 @@
 //!
 //!     cargo bench --bench stiffness -- --search [TEXT] [--numbers TOML] [--poses N] [--seeds N] [--keys TOML]
 //!
-//! The cost of a set of numbers is the sum over all fingers and measures of (worst measure / goal)^4. The exponent
-//! makes the cost depend mostly on the measures that miss their goals by the largest factor. The search varies one
-//! number at a time by a factor and keeps every change that lowers the cost. When a pass over all numbers lowers the
-//! cost by less than 1 %, the search continues with a smaller factor.
+//! The cost of a set of numbers is the sum of (worst value / goal)^4 over all measures and fingers. The exponent makes
+//! the cost depend mostly on the measures that miss their goals by the largest factor. The search varies one number at
+//! a time by a factor and keeps every change that lowers the cost. When a pass over all numbers lowers the cost by less
+//! than 1 %, the search continues with a smaller factor.
 
 use crate::Arguments;
 use crate::cases::Case;

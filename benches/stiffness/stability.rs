@@ -1,5 +1,5 @@
-//! The rows of the table about the exact one-cycle map: without friction, with exact measurements, and with all states
-//! of the controller.
+//! Measures the stability rows of the table of measurements (`table.rs`): the eigenvalues of the exact one-cycle map,
+//! without friction, with exact measurements, and with all states of the controller.
 
 use crate::cases::{self, Case, Friction, USUAL};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -26,15 +26,15 @@ pub struct Stability {
     pub samples: usize,
     /// Number of samples that have an eigenvalue outside the unit circle, do not come to rest, or have a slack tendon.
     pub unstable: usize,
-    /// Largest modulus of an eigenvalue, per cycle, among the samples that come to rest.
+    /// Largest modulus of an eigenvalue, per cycle, among the samples that come to rest without a slack tendon.
     pub largest: f64,
 }
 
-/// A row of this file has this many samples for each pose of the other rows of the table.
+/// Number of samples in a row of this file for each pose in the other rows of the table.
 const DENSITY: usize = 20;
 
-/// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would
-/// both be at t_min, where eq. 20 has a kink.
+/// Returns samples in random poses within `limits`. No spring is stiffer than the bound on Kx, and the loads are small.
+/// Without a load, tendons 1 and 4 would both be at t_min, where eq. 20 has a kink.
 fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(case.seed + 2);
     let bound = case.bound();
@@ -49,7 +49,7 @@ fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
         .collect()
 }
 
-/// Measures fingers in the poses of the goals.
+/// Measures fingers in poses within [`USUAL`].
 pub fn usual(case: &Case) -> Stability {
     measure(case, &samples(case, &USUAL))
 }
@@ -61,7 +61,7 @@ pub fn anywhere(case: &Case) -> Stability {
     measure(case, &samples(case, &limits))
 }
 
-/// Measures fingers that press against walls of the three stiffnesses in random directions.
+/// Measures fingers that press against walls in random directions. The stiffnesses of the walls are those in [`WALLS`].
 pub fn against_walls(case: &Case) -> Stability {
     let links = ConfiguredFinger::default().links();
     let mut samples = samples(case, &USUAL);

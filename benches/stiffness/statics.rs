@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Fidelity {
     /// Error of the apparent stiffness in the worst direction, relative to the stiffness that the controller reports.
     pub error: f64,
-    /// The reported stiffness as a part of Kx. It is less than 1 if the tendons cannot carry Kx in this pose.
+    /// The reported stiffness as a fraction of Kx. It is less than 1 if the tendons cannot carry Kx in this pose.
     pub scale: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct Pushed {
     pub forces: Vec<Vector3<f64>>,
     /// For each pair of opposite pushes: half of the difference between the two positions of the true tip, cm.
     pub deflections: Vec<Vector3<f64>>,
-    /// The reported stiffness as a part of Kx.
+    /// The reported stiffness as a fraction of Kx.
     pub scale: f64,
 }
 
@@ -73,7 +73,8 @@ pub fn pushed_along_axes(held: &Held) -> Pushed {
 }
 
 /// Pushes the tip with a triangular wave of 3 s, with friction. The largest force deflects the spring by 2 mm in either
-/// direction. Returns the error of the stiffness that follows from the slope of the deflection.
+/// direction. Computes the stiffness from the slope of the deflection over the force, and returns its error relative to
+/// `stiffness`.
 pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     const AMPLITUDE: f64 = 0.2;
     worst(each(&case.poses(), |_, pose| {
@@ -100,8 +101,8 @@ pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     }))
 }
 
-/// Returns the error of the stiffness that follows from the deflection along the push. The finger is pushed from rest
-/// with Kx times `deflection` cm for 3 s.
+/// Pushes the finger from rest with Kx times `deflection` cm for 3 s. Computes the stiffness from the deflection along
+/// the push, and returns its error relative to `stiffness`.
 pub fn pushed_from_rest(case: &Case, friction: Friction, stiffness: f64, deflection: f64) -> f64 {
     worst(each(&case.poses(), |_, pose| {
         worst(axes().map(|direction| {

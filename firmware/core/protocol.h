@@ -37,8 +37,8 @@ enum {
     REASON_UNKNOWN_FRAME = 6
 };
 
-/* Offsets of the fields of a Configure, counted from the header. A Refused with REASON_VALUE carries one of
-   them as its detail. */
+/* Offsets of the fields of a Configure, counted from the header. FIELD_TORQUE_LIMITS is the offset of the limit of
+   motor 1; each further motor adds 2. The detail of a Refused with REASON_VALUE is the offset of a field. */
 enum { FIELD_VERSION = 2, FIELD_WATCHDOG = 3, FIELD_END_STATE = 5, FIELD_TORQUE_LIMITS = 10 };
 
 /* Flags of a Command. */

@@ -6,7 +6,7 @@ void stuff_begin(struct stuffing *stuffing, uint8_t *stuffed)
     stuffing->next = stuffed + 1;
 }
 
-/* The end of the bytes counts as a zero. */
+/* The last distance leads to the end of the bytes, as if a zero followed them. */
 void stuff_end(struct stuffing *stuffing)
 {
     *stuffing->distance_at = (uint8_t)(stuffing->next - stuffing->distance_at);

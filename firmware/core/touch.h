@@ -7,8 +7,8 @@
 
 enum { TOUCH_ELEMENTS_MOST = 16, TOUCH_QUEUE = 16 };
 
-/* The properties of the elements that are fixed when the board is built, in counts of their converter. The excess of an
-   element is its count minus its count at its first reading. */
+/* The properties of the elements. They are fixed when the board is built. The thresholds `made`, `lost` and `step` are
+   in counts of the converter. The excess of an element is its count minus its count at its first reading. */
 struct touch_traits {
     uint16_t elements; /* 0 to TOUCH_ELEMENTS_MOST. */
     uint16_t made;     /* An element becomes pressed when its excess is above this value. */

@@ -7,7 +7,7 @@ REGISTER(control, 0xE000E010u);
 REGISTER(reload, 0xE000E014u);
 REGISTER(value, 0xE000E018u);
 
-/* Processor clock, interrupt, on. */
+/* Selects the processor clock, enables the interrupt, and starts the counter. */
 enum { CONTROL_RUN = 7 };
 
 /* SysTick is a down counter of 24 bits. */

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/* Returns the time since power-up, us. The interrupt of the line calls this function too. */
+/* Returns the time since power-up, us. The interrupt handler of the serial line calls this function too. */
 uint32_t time_microseconds(void);
 
 #endif

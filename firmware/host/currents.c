@@ -1,5 +1,5 @@
-/* Compares the currents that the core sets with the formula in 64 bits, for torques, units, torque constants and limits
-   of all sizes. */
+/* The core must set the currents that the formula gives in 64-bit arithmetic, for torques, units, torque constants and
+   limits of all sizes. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -40,7 +40,7 @@ static void configure(const uint32_t constants[MOTORS], uint16_t limit)
     finger_configure(&finger, &request, &answer);
 }
 
-/* Commands torques. Returns whether the Reply says that one was clipped. */
+/* Commands torques. Returns whether the Reply says that a torque was clipped. */
 static bool command(const int16_t torques[MOTORS])
 {
     struct frame request, answer;

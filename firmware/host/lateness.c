@@ -63,7 +63,8 @@ static void enable(uint32_t now)
     expect(finger.state == FINGER_ENABLED, "a Command did not enable the finger");
 }
 
-/* The emergency stop begins after the check at the arrival of a Configure, and ends before the next check. */
+/* The emergency stop is so short that only one check sees it: not the check at the arrival of a Configure, but the
+   check while the board handles this Configure. */
 static void stop_during_a_configure(void)
 {
     enable(0);
@@ -79,7 +80,7 @@ static void stop_during_a_configure(void)
 
 int main(void)
 {
-    /* Includes instants just before the timer wraps. */
+    /* Includes instants just before the timer wraps, and just before its highest bit is set. */
     static const uint32_t beginnings[] = {0, 0xFFFFFFFFu - 10000, 0x7FFFFFFFu - 10000};
     for (size_t i = 0; i < 3; i++) {
         enable(beginnings[i]);

@@ -1,5 +1,5 @@
-/* Reads the test vectors one line at a time. A line is an object of numbers, lists of numbers and strings without
-   escapes. */
+/* Reads the test vectors one line at a time. A line is a JSON object. Its values are numbers, lists of numbers, and
+   strings without escapes. */
 
 #ifndef VECTOR_LINE_H
 #define VECTOR_LINE_H

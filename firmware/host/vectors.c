@@ -72,8 +72,8 @@ static void check_request(const struct frame *frame)
     }
 }
 
-/* Writes an answer from its fields, to be compared byte by byte. Returns false for frames that this board never
-   sends. */
+/* Writes an answer from the fields of its vector. The caller compares the bytes. Returns false for frames that this
+   board never sends. */
 static bool write_answer(struct frame *frame, uint8_t type)
 {
     struct sensors sensors = {0};

@@ -70,7 +70,7 @@ void pin_set(unsigned pin, bool high)
     port_f[1u << pin] = high ? 0xFFu : 0u;
 }
 
-/* 50 MHz: the PLL's 200 MHz, from a crystal of 8 MHz, divided by 4. */
+/* Sets the clock to 50 MHz. The PLL makes 200 MHz from a crystal of 8 MHz, and a divider divides this clock by 4. */
 static void start_clock(void)
 {
     const uint32_t divided = 3u << 23 | 1u << 22 | 0xEu << 6, bypass = 1u << 11, locked = 1u << 6;

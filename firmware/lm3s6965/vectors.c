@@ -7,7 +7,7 @@
 /* Symbol of the linker script. */
 extern uint32_t stack_top;
 
-/* The emulated board does not use its watchdog, so nothing resets it. */
+/* Loops for ever. The emulated board does not use its watchdog, so nothing resets the board. */
 void processor_fault(void)
 {
     for (;;)

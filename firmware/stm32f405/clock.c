@@ -39,8 +39,9 @@ uint32_t clock_start(void)
     RCC->CR |= RCC_CR_PLLON;
     if (!becomes(&RCC->CR, RCC_CR_PLLRDY, RCC_CR_PLLRDY))
         return INTERNAL_MEGAHERTZ;
-    /* 168 MHz at 3.3 V needs five wait states (3.5.1, table 10). They are set before the clock rises. The caches are on
-       (3.5.2). Prefetch is off, so that the caches hold what was used last and the timing can be computed. */
+    /* 168 MHz at 3.3 V needs five wait states (RM0090, 3.5.1, table 10). They are set before the clock rises. The
+       caches are on (3.5.2). Prefetch is off, so that the caches hold what was used last and the timing can be
+       computed. */
     FLASH_ACR = FLASH_ACR_LATENCY_5 | FLASH_ACR_ICEN | FLASH_ACR_DCEN;
     RCC->CFGR = RCC_CFGR_PPRE1_DIV4 | RCC_CFGR_PPRE2_DIV2;
     RCC->CFGR = RCC_CFGR_PPRE1_DIV4 | RCC_CFGR_PPRE2_DIV2 | RCC_CFGR_SW_PLL;

@@ -52,7 +52,7 @@ void drivers_set(const int32_t microamperes[MOTORS])
         return;
     }
     GPIOC->BSRR = pins;
-    /* Has no effect while the emergency stop is open: hardware keeps MOE clear (17.4.18). */
+    /* Has no effect while the emergency stop is open: hardware keeps MOE clear (RM0090, 17.4.18). */
     TIM8->BDTR = BREAK | TIM_BDTR_MOE;
     GPIOC->BSRR = 1u << PIN_ENABLE;
 }

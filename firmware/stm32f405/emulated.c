@@ -1,10 +1,11 @@
 /* The processor of the emulated board: netduinoplus2 in QEMU. It differs from the real board in five ways:
 
    - The emulator has no clock tree. The processor runs at 168 MHz from the start.
-   - The board sleeps between bytes, to leave processor time to other programs. SysTick ends the sleep. SysTick cannot
-     be the clock as well: on a busy machine the emulator loses some of its interrupts. TIM2 is the clock.
-   - The emulated USART always has room and raises no interrupt for it. Output is written without reading the status,
-     because every read costs the emulator a round through its main loop.
+   - The board sleeps between bytes, to leave processor time to other programs. A byte or SysTick ends the sleep.
+     SysTick cannot be the clock as well: on a busy machine the emulator loses some SysTick interrupts. TIM2 is the
+     clock.
+   - The emulated USART always has room for output, and raises no interrupt to report this. Output is written without
+     reading the status, because every read costs the emulator a round through its main loop.
    - The plant replaces encoders, converter and drivers.
    - There is no watchdog, so nothing resets the processor after processor_fault. */
 

@@ -24,8 +24,8 @@ void gauges_start(void)
 {
     RCC->APB1ENR |= RCC_APB1ENR_SPI2;
     (void)RCC->APB1ENR;
-    /* 42 MHz / 4. SCLK idles high. The converter shifts on the rising edge, so each bit is read on the falling edge
-       before it: CPOL = 1, CPHA = 0. */
+    /* SCLK has 42 MHz / 4 and idles high. Each bit is read on a falling edge, because the converter shifts on the
+       rising edge that follows: CPOL = 1, CPHA = 0. */
     SPI2->CR1 = SPI_CR1_DFF_16 | SPI_CR1_SSM | SPI_CR1_SSI | SPI_CR1_BR_DIV4 | SPI_CR1_MSTR | SPI_CR1_CPOL;
     SPI2->CR1 |= SPI_CR1_SPE;
     /* The converter requires a reset of 50 ns or more after power-up. */

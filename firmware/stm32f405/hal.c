@@ -84,7 +84,7 @@ uint16_t hal_faults(unsigned finger)
 {
     (void)finger;
     unsigned faults = 0;
-    /* The stop may have ended before its pin is read here. */
+    /* drivers_were_stopped also reports a stop that ended before its pin is read here. */
     if (GPIOA->IDR & 1u << PIN_STOP || drivers_were_stopped())
         faults |= STATUS_EMERGENCY_STOP;
     if (!(GPIOC->IDR & 1u << PIN_SUPPLY_GOOD))

@@ -31,7 +31,8 @@ static const struct finger_traits common = {
 /* Symbol of the linker script. */
 extern const uint8_t processor_unique_number[12];
 
-/* Also handles the NMI of a crystal that has failed. The independent watchdog resets the processor. */
+/* Handles processor faults, and the NMI that reports a failed crystal. The loop ends when the independent watchdog
+   resets the processor. */
 void processor_fault(void)
 {
     drivers_off();

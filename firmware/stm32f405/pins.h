@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-/* 8.4.1, 8.4.4 of RM0090. */
+/* Sections 8.4.1 (mode) and 8.4.4 (pull) of the chip's reference manual, RM0090. */
 enum pin_mode { INPUT = 0, OUTPUT = 1, ALTERNATE = 2 };
 enum pin_pull { NO_PULL = 0, PULL_UP = 1, PULL_DOWN = 2 };
 

@@ -20,7 +20,7 @@ void serial_start(uint32_t megahertz)
     RCC->APB2ENR |= RCC_APB2ENR_USART1;
     (void)RCC->APB2ENR;
     /* A bit takes 16 times the divider in bus cycles, and the register holds the divider with four binary places. So
-       the register holds the bus cycles of a bit (30.3.4). */
+       the register holds the bus cycles of a bit (RM0090, 30.3.4). */
     USART1->BRR = (megahertz * 1000000u + BAUD / 2u) / BAUD;
     USART1->CR1 = SERIAL_RUN;
     NVIC_IPR[INTERRUPT_USART1] = PRIORITY;
@@ -30,7 +30,7 @@ void serial_start(uint32_t megahertz)
 void serial_interrupt(void)
 {
     uint32_t status = USART1->SR;
-    /* Reading DR also ends an overrun, which has lost a byte. The checksum reveals it. */
+    /* Reading DR also ends an overrun, which has lost a byte. The checksum reveals the loss. */
     if (status & USART_SR_RXNE)
         line_received((uint8_t)USART1->DR);
     else if (status & USART_SR_ORE)

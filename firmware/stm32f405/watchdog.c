@@ -12,7 +12,7 @@ void watchdog_start(void)
     IWDG->KR = IWDG_KR_START;
     IWDG->KR = IWDG_KR_UNLOCK;
     IWDG->PR = 0; /* The prescaler divides by 4. */
-    /* This value takes effect within 0.3 ms. Until then a feed loads the reset value, 4096 counts (21.4.3). */
+    /* This value takes effect within 0.3 ms. Until then a feed loads the reset value, 4096 counts (RM0090, 21.4.3). */
     IWDG->RLR = COUNTS - 1;
 }
 

@@ -1,5 +1,5 @@
-//! Takes the place of `src/realtime/atomics.rs`: the types of loom. The orderings can be weakened, to show that the
-//! checks detect a missing ordering.
+//! Replaces `src/realtime/atomics.rs` with the types of loom. The orderings can be weakened, to show that the checks
+//! detect a missing ordering.
 
 use loom::sync::atomic;
 use std::cell::Cell;

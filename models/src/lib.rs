@@ -101,7 +101,7 @@ mod finger {
         pub number: u32,
     }
 
-    /// Takes the place of the path, whose tables have pages of their own.
+    /// Takes the place of the path, without its large tables, which have pages of their own.
     mod path_buffer {
         use crate::control::motion::PathTable;
         use crate::realtime::LockedMemory;
@@ -138,7 +138,7 @@ mod telemetry {
     pub mod block_ring_checks;
 
     mod marks {
-        /// Smaller than the number in the library, because loom would take too long for a block of the library.
+        /// Smaller than in the library, because loom would take too long with as many marks as in the library.
         pub const MARKS: usize = 1;
     }
 }
@@ -160,7 +160,7 @@ use std::sync::Arc;
 const PREEMPTIONS: usize = 3;
 
 /// Size of the stack of a thread, in machine words. Loom's documentation says bytes, but its generators count words.
-/// Loom gives 4096 words, which copies of a finger's report fill.
+/// Loom's default is 4096 words. Copies of a finger's report fill such a stack.
 const STACK_WORDS: usize = 32 * 1024;
 
 /// Runs `check` in every order of its threads that has at most `PREEMPTIONS` preemptions.

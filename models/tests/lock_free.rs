@@ -1,4 +1,4 @@
-//! The lock-free code of the library, in every order of its threads.
+//! Checks the lock-free code of the library in every order of its threads that [`explore`] tries.
 
 use std::process::Command;
 use std::sync::{Arc, Mutex};
@@ -68,14 +68,14 @@ fn a_set_point_is_valid_for_one_spring() {
     holds_and_needs_its_orderings(mailbox_checks::a_set_point_is_for_one_spring);
 }
 
-/// The places of the log are atomic, so a missing ordering shows in what the reader gets.
+/// The places of the log are atomic, so a missing ordering causes no data race. Instead, the reader gets mixed events.
 #[test]
 fn a_log_passes_whole_events_and_counts_the_lost_ones() {
     let check = event_log_checks::events_are_whole_and_lost_events_are_counted;
     holds_and_fails_without_its_orderings("parts of different events", check);
 }
 
-/// The words of the ring are atomic, so a missing ordering shows in what the reader gets.
+/// The words of the ring are atomic, so a missing ordering causes no data race. Instead, the reader gets mixed blocks.
 #[test]
 fn a_ring_of_blocks_passes_whole_blocks() {
     let check = block_ring_checks::blocks_are_whole_and_the_newest_arrives;

@@ -5,10 +5,10 @@ one sleeps while another process burns Python. One run measures the three in tur
     taskset --cpu-list 0 python wake_up.py --servo-core 1
 
 With the second command the servos run on core 1 and everything else on core 0. The planner that burns Python does so in
-as many threads as it has cores, and another of its threads reads and sends 1000 times a second. The other process burns
-Python in as many threads. It has no hand, so its interpreter lock cannot affect the servos: only its use of the cores
-can. Each percentile is the median over all fingers and rounds, and the longest time is the maximum. Run the benchmark
-on a quiet machine with real-time scheduling.
+as many threads as it has cores, and another of its threads reads and sends poses 1000 times a second. The other process
+burns Python in as many threads. It has no hand, so its interpreter lock cannot affect the servos: only its use of the
+cores can. Each percentile is the median over all fingers and rounds, and the longest time is the maximum. Run the
+benchmark on a quiet machine with real-time scheduling.
 """
 
 import argparse

@@ -72,7 +72,7 @@ pub fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'
         return Ok(array.clone());
     }
     let py = object.py();
-    // `array` copies an irregular array, which `asarray` does not.
+    // `numpy.array` copies an irregular array, but `numpy.asarray` returns it unchanged.
     let array = py.import("numpy")?.call_method1(intern!(py, "array"), (object, intern!(py, "float64")));
     Ok(array.map_err(|error| not_numbers(py, name, error))?.cast_into::<PyArrayDyn<f64>>()?)
 }

@@ -127,9 +127,9 @@ impl Refusal {
         }
     }
 
-    /// Returns what the caller should do: the remedy of the fault, or without a fault the part of the text after its
-    /// last colon, because a text of the library ends with the remedy. In some texts, what follows the last colon
-    /// begins with a part of the cause.
+    /// Returns what the caller should do. For a fault other than wrong wiring, this is the remedy of the fault.
+    /// Otherwise it is the part of the text after the last colon, because a text of the library ends with the remedy.
+    /// In some texts, a part of the cause stands between the last colon and the remedy.
     fn remedy(&self) -> String {
         // For wrong wiring, the text is used: it ends with the remedy for the wrong connection that was found.
         if let Some((_, fault)) = self.fault()

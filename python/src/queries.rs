@@ -54,7 +54,7 @@ impl Hand {
         records::finger_fault(py, &fault)
     }
 
-    /// The duration of a stage of the cycles of a finger.
+    /// How long one stage of a finger's cycle took, as a distribution over the cycles.
     #[pyo3(signature = (finger, stage="wake_up"))]
     fn timing<'py>(
         &self,
@@ -237,7 +237,7 @@ impl Hand {
         self.quick(py, |hand| hand.lost_touch_events(finger))
     }
 
-    /// Makes the newest count of each tactile element of a finger its zero, and returns the zeros.
+    /// Sets the zero of each tactile element of a finger to the newest count of this element, and returns the zeros.
     fn tare_touch(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::finger)] finger: i32) -> PyResult<Vec<u16>> {
         self.quick(py, |hand| hand.tare_touch(finger).and_then(|()| hand.touch_zeros(finger)))
     }

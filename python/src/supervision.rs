@@ -82,9 +82,9 @@ impl Hand {
                 other => other,
             };
             if let Err(exception) = pause(py, &state, progress) {
-                // Without polls, the calibration would continue, for example move the joints between their mechanical
-                // stops, and the finger would then stay limp. If the hand was closed meanwhile, the finger is in its
-                // end state.
+                // Without this stop, the calibration would continue although nobody polls it. It could still move the
+                // joints between their mechanical stops, and the finger would be limp at the end. If the hand was
+                // closed meanwhile, the finger is in its end state.
                 let _ = self.0.with(|hand| hand.stop(finger));
                 return Err(exception);
             }

@@ -40,11 +40,11 @@ def shared():
 
 @pytest.fixture
 def server():
-    """A server of a remote hand that does what the test says, without a network."""
+    """A scripted server of a remote hand. The server does what the test says, without a network."""
     return Scripted()
 
 
 @pytest.fixture
 def remote(server):
-    """The remote hand of this server."""
+    """The remote hand of the fixture `server`."""
     return server.hand

@@ -1,5 +1,5 @@
-"""A server without a hand, written from docs/remote-protocol.md, for tests of what a real server does rarely: it
-refuses, falls silent, or gives the hand to somebody else when the test says so."""
+"""A server without a hand, written from docs/remote-protocol.md. A test can make it refuse, fall silent, or give the
+hand to somebody else. A real server rarely does these things."""
 
 import json
 import struct

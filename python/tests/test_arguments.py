@@ -62,7 +62,7 @@ def test_a_set_point_that_is_valid_for_ever_does_not_expire():
         hand.send_position(1, HOME, valid=math.inf)
         hand.send_position(2, HOME, valid=1e300)
         hand.send_path(3, [2.0], joints=[hand.position(3)], valid=math.inf)
-        # Without a time, the configured one applies.
+        # If `valid` is left out, the configured `valid_ms` applies.
         with sun2xp.simulated(text="[finger.motion]\nvalid_ms = 50\n") as other:
             others = other.events()
             other.send_position(1, HOME)

@@ -1,4 +1,4 @@
-"""Hands at the port of a board, which is a program of its own."""
+"""Hands at the port of a board that another process simulates."""
 
 import math
 import signal

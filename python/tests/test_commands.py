@@ -1,4 +1,4 @@
-"""Every command reaches the finger, and every query has its shape."""
+"""Commands reach the finger, and the results of queries have the right shapes."""
 
 import dataclasses
 

@@ -127,8 +127,8 @@ def test_a_wait_with_the_interpreter_lock_is_seen():
 
 
 def test_waiting_leaves_the_interpreter_to_others(hand):
-    """Another thread runs during a wait. It also runs as soon as a wait with the interpreter lock has returned. So the
-    test looks for gaps, and does not count how often the thread has run."""
+    """Another thread must run during a wait. If a wait kept the interpreter lock, the other thread would still run as
+    soon as the wait returned. So the test looks for gaps, and does not count how often the thread has run."""
 
     def waits_for_an_event(events):
         while events.wait(0.5) is not None:
@@ -165,7 +165,7 @@ def test_an_opened_hand_that_no_object_has_taken_is_closed_without_the_interpret
     quarter = (time.monotonic() - begin) / 4
     done.set()
     counter.join()
-    # The fingers need 0.2 s for their end states. After that, this thread may wait for the lock before it goes on.
+    # Closing takes 0.2 s, until the fingers are in their end states. Then this thread may still wait for the lock.
     assert quarter > 0.02 and any(quarter < at - begin < 3 * quarter for at in counts)
 
 

@@ -29,7 +29,8 @@ def test_warnings_of_opening_are_in_the_log_when_open_returns(tmp_path):
         "    assert any('simulated' in text for _, _, text in texts), texts\n"
         "    assert {(name, level) for name, level, _ in texts} == {('sun2xp', 'WARNING')}, texts\n"
     )
-    # Without a configuration every finger is simulated, and the library says so.
+    # Without a configuration every finger is simulated, and the library warns of this. The handler receives the
+    # warning, so nothing goes to standard error.
     assert run(program, tmp_path).stderr == ""
 
 

@@ -88,7 +88,8 @@ def test_a_refusal_is_raised_by_the_next_call_and_the_set_point_is_left_out(doub
     double.refusal = None
     double.targets.clear()
     eventually(lambda: len(double.targets) >= 3)
-    # The set point before the refused one is in force. The server would take its part as new if it came again.
+    # The earlier set point, command 1, stays in force. Its part must not be sent again, because command 2 was sent
+    # after it: a server that had applied command 2 would take command 1 as a new part.
     assert double.targets[-1][3] == []
     assert hand.state(1).command == 1
     hand.send_position(1, [0.1, 0.6, 0.9])
@@ -120,7 +121,7 @@ def test_a_refusal_is_raised_by_the_next_call_and_the_set_point_is_left_out(doub
 def test_what_cannot_be_right_is_refused_before_it_is_sent(hand, double, call):
     with pytest.raises(sun2xp.Refused, match=": .") as refusal:
         call(hand)
-    # Every cause is followed by what to do.
+    # The text is a cause, a colon, and what to do, without a full stop at the end.
     assert not refusal.value.text.endswith(".")
     double.targets.clear()
     eventually(lambda: len(double.targets) >= 2)

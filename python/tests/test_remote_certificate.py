@@ -9,7 +9,7 @@ from sun2xp.remote._certificate import common_name
 
 
 def element(tag, *contents):
-    """Returns a DER element of less than 128 bytes."""
+    """Returns a DER element whose content has less than 128 bytes."""
     content = b"".join(contents)
     return bytes([tag, len(content)]) + content
 

@@ -60,7 +60,8 @@ def test_a_hand_that_is_closed_or_lost_is_named_with_its_remedy(server, remote):
 
 
 def test_a_hand_of_which_nothing_is_heard_any_more_is_lost(server, remote):
-    """The server has ended the epoch after 10 s, because the Targets repeat an old time."""
+    """A Target contains the newest time that the client has received from the server. When this time is older than
+    10 s (`end_ms` of this server), the server has ended the client's ownership, so the client must not send more."""
     server.silence = 9.0
     remote.send_position(1, HOME)
     assert remote.owned

@@ -6,8 +6,8 @@ import sys
 
 from remote_double import Double
 
-#: A program that forks while one of its threads holds the lock of the Sender. The thread that sends the Targets may
-#: also hold this lock at a fork.
+#: A program that forks while one of its threads holds the lock of the Sender. In any program, the thread that sends the
+#: Targets may hold this lock during a fork.
 PROGRAM = """
 import os, signal, sys, threading, time
 import sun2xp, sun2xp.remote

@@ -15,8 +15,8 @@ PATH = ([1.0], [HOME])
 
 @pytest.mark.parametrize("seed", range(100))
 def test_whatever_is_lost_the_newest_values_arrive_once(seed):
-    """Targets and States are lost. The finger gets the newest values, no command number comes back, and no path begins
-    more often than it was sent."""
+    """Targets and States are lost. The finger gets the newest values, the command numbers never decrease, and no path
+    begins more often than it was sent."""
     draw, server = random.Random(seed), Scripted()
     hand, newest, values, numbers, paths, begun = server.hand, {}, {}, [0], 0, 0
 
@@ -56,7 +56,7 @@ def test_whatever_is_lost_the_newest_values_arrive_once(seed):
 
 
 @pytest.mark.parametrize("seed", range(100))
-def test_whatever_is_refused_no_command_number_comes_back(seed):
+def test_whatever_is_refused_command_numbers_never_decrease(seed):
     """Targets, States and refusals are lost or late."""
     draw, server = random.Random(seed), Scripted()
     hand, refused = server.hand, []

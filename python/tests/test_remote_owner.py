@@ -80,7 +80,7 @@ def test_a_state_from_before_the_acquire_applies_nothing(server, remote):
     remote.acquire(take_over=True)
     remote.send_position(1, HOME)
     command = server.command()[0]
-    # This State was published before the Answer, and arrives after it. Another client had the same command number.
+    # A State from before the Answer arrives after it. In the previous epoch, another client used this command number.
     server.records["command"], server.records["bits"] = command, EVERYTHING
     server.now -= 30 * MS
     server.state(owner=server.number - 1)
@@ -145,7 +145,7 @@ def test_a_restart_of_the_machine_ends_the_epoch(server, remote, back):
     assert not remote.owned
     with pytest.raises(sun2xp.remote.NotOwner):
         remote.wait(1, timeout=0)
-    # What arrives from then on is new.
+    # The States of the restarted machine are accepted, although their times are earlier.
     assert remote.state(1).time == server.now
     remote.acquire()
     server.state()
@@ -195,7 +195,7 @@ def test_the_age_of_a_finger_that_has_stopped_is_that_of_the_state(server, remot
 def test_a_path_is_sent_with_one_command_number(server, remote):
     remote.send_path(1, *PATH)
     assert server.command()[:3] == (1, 3, 0)
-    # Kx waits for the path.
+    # Kx and the damping are not sent until a State has confirmed the path.
     remote.send_stiffness(1, KX)
     remote.send_damping(1, 1.5)
     server.target()

@@ -114,7 +114,7 @@ def test_a_fault_has_its_finger_although_the_server_does_not_tell_its_status(ser
 
 
 def test_a_fault_that_nobody_names_any_more_has_no_finger(server):
-    """The finger has been recovered since."""
+    """The finger was recovered after the server had refused the request."""
     server.code = 7
     with pytest.raises(sun2xp.Fault) as refused:
         server.hand.recover(0)

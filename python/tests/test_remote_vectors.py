@@ -1,5 +1,5 @@
-"""The messages of `sun2xp.remote` against the vectors of the protocol: what a client sends is written, and what it
-receives is read."""
+"""Compares `sun2xp.remote` with the test vectors of the protocol: it writes the messages that a client sends, and reads
+those that a client receives."""
 
 import json
 import math

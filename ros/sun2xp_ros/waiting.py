@@ -6,7 +6,7 @@ from typing import Any, Callable, List, Sequence, Set
 
 
 class _Waiting:
-    """A trajectory, and its fingers that have got no other command since."""
+    """A waiting trajectory, and those of its fingers that have got no other command since it was added."""
 
     def __init__(self, fingers: Sequence[int]) -> None:
         self.fingers: Set[int] = set(fingers)

@@ -28,7 +28,7 @@ struct Arguments {
     /// Without TLS.
     #[arg(long)]
     plain: bool,
-    /// The endpoint to which the client connects. The benchmark uses it when it starts itself as the client.
+    /// The endpoint to which the client connects. The benchmark starts itself as the client with this option.
     #[arg(long, hide = true)]
     client: Option<String>,
     /// The folder with the certificates of the client.
@@ -138,8 +138,8 @@ fn print(arguments: &Arguments, measured: &Measured) {
     println!("| {found} of {sent} set points | {median:.0} us | {p99:.0} us | {p999:.0} us | {goal:.0} us |");
 }
 
-/// Sends set points at intervals that fall on every phase of the servo's period, and prints when it sent them. If the
-/// hand refuses a set point, prints the times of the earlier ones.
+/// Sends set points at times that are spread over the servo's period, and prints these times. If the hand refuses a set
+/// point, prints the times of the earlier ones.
 fn client(arguments: &Arguments, endpoint: &str) -> Result<(), Failure> {
     let hand = common::remote(endpoint, arguments.folder.as_deref())?;
     let mut sent = Vec::new();

@@ -25,7 +25,7 @@ use sun2xp_remote_client::RemoteHand;
 use sun2xp_remote_protocol::{HandKeys, Part, Place, Target};
 use zenoh::Wait;
 
-/// Time that is not measured at the beginning of a turn, after clients have started or ended.
+/// Pause before the measurement of a turn, after clients have started or ended.
 const SETTLING: Duration = Duration::from_secs(2);
 
 /// Largest permitted ratio of the 99.9 % latency with clients to the 99.9 % latency without clients.

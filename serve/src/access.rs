@@ -1,6 +1,7 @@
-//! Who may send and receive what, as the access control of zenoh. Everything that is not listed is denied. A subject is
-//! the common name of a certificate, so there is access control only with TLS. A rule allows a key expression only if
-//! it allows every key that matches the expression. So a client reaches no further keys with a wildcard.
+//! Generates the configuration of zenoh's access control: it says who may send and receive what. Everything that is not
+//! listed is denied. A client is identified by the common name of its certificate, so there is access control only with
+//! TLS. A rule allows a key expression only if it allows every key that matches the expression. So a client reaches no
+//! further keys with a wildcard.
 
 use crate::json::{string, strings};
 use crate::settings::Permission;
@@ -73,7 +74,7 @@ impl Scope {
         format!("sun2xp/{}/{rest}", self.0)
     }
 
-    /// What everybody who is listed may read.
+    /// The keys that a client may read, whether its permission is `Read` or `Command`.
     fn read(&self, client: &ClientName) -> Vec<String> {
         ["state", "events", "status", &format!("refused/{client}")].map(|rest| self.key(rest)).into()
     }

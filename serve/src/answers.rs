@@ -1,6 +1,6 @@
 //! Sends Answers in threads of their own. A client that has stopped reading can hold up a reply, and the threads of
-//! zenoh that receive Targets must not wait for it. A reply has the congestion control of its query, which the client
-//! chooses. Zenoh 1.10 ignores a congestion control that is set for the reply.
+//! zenoh that receive Targets must not wait for it. The client chooses the congestion control of its query, and the
+//! reply has the same one. Zenoh 1.10 ignores a congestion control that is set for the reply.
 //!
 //! When a thread drops a query, zenoh sends the end of the query in this thread. This sending can block too. So
 //! callbacks pass every query to one of the threads that send Answers, even a query that gets no answer.
@@ -34,7 +34,7 @@ pub enum Outgoing {
     Reply(Query, KeyExpr<'static>, Vec<u8>, Place),
     /// The refusal of a Target of this client.
     Refusal(ClientName, Vec<u8>),
-    /// The Status.
+    /// The reply to a query for the Status.
     Status(Query, Place),
     /// The end of a query that has no answer.
     End(Query),
@@ -110,15 +110,16 @@ impl Answers {
     }
 }
 
-/// Sends what is in the queue until the Requests that were in progress at the end of the server have their Answers.
+/// Sends what is put into the queue. When the server ends, this function first sends the Answers to the Requests that
+/// were still in progress, and then returns.
 pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
     while !shared.answered.load(Ordering::Acquire) {
         if let Ok(outgoing) = queue.recv_timeout(INTERVAL) {
             send_one(shared, session, outgoing);
         }
     }
-    // The Answers to those Requests are in the queue by now. A client that keeps sending queries does not hold up the
-    // end.
+    // The last Answers are in the queue by now. The number of messages is limited here, so that a client that keeps
+    // sending queries cannot hold up the end of the server.
     queue.try_iter().take(WAITING).for_each(|outgoing| send_one(shared, session, outgoing));
 }
 

@@ -185,7 +185,7 @@ impl Desk {
     pub fn release(&mut self) {
         self.ownership.end();
         (self.silence, self.stop_at) = (None, None);
-        // Every finger of the hand can be stopped.
+        // This returns no error, because it stops only fingers of the hand.
         let _ = self.stop(None);
     }
 

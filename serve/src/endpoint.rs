@@ -16,7 +16,8 @@ impl Endpoint {
     /// Checks that the endpoint agrees with the configuration of TLS.
     ///
     /// # Errors
-    /// Returns the reason, or none if other machines can reach the endpoint and there is no TLS.
+    /// Returns the reason. Returns `None` in place of a reason if there is no TLS and other machines can reach the
+    /// endpoint.
     pub fn check(&self, tls: bool) -> Result<(), Option<String>> {
         match (self.tls, tls) {
             (true, true) => Ok(()),

@@ -1,4 +1,5 @@
-//! Epochs that nobody can guess.
+//! Epochs: random numbers that nobody can guess. A client that acquires the hand gets a new epoch, a secret that its
+//! Targets must contain.
 
 use crate::ServeError;
 

@@ -196,7 +196,8 @@ impl Fingers {
         self.send(number, report, valid, true);
     }
 
-    /// Sends the destination of a finger, as far as the lead admits it, and its spring if `spring` is set.
+    /// Sends the farthest place on the way to a finger's destination that the lead admits. If `spring` is set, also
+    /// sends the finger's Kx and damping.
     fn send(&mut self, number: i32, report: &FingerReport, valid: Validity, spring: bool) {
         let index = number as usize - 1;
         let goal = match spring {

@@ -1,6 +1,6 @@
-//! Texts of the configuration of zenoh, which is JSON.
+//! JSON strings and arrays for the configuration of Zenoh.
 
-/// Returns a text as a string of JSON.
+/// Returns a text as a JSON string.
 #[must_use]
 pub fn string(text: &str) -> String {
     let mut quoted = String::with_capacity(text.len() + 2);
@@ -16,7 +16,7 @@ pub fn string(text: &str) -> String {
     quoted
 }
 
-/// Returns texts as an array of JSON.
+/// Returns texts as a JSON array of strings.
 pub fn strings(texts: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     let quoted: Vec<String> = texts.into_iter().map(|text| string(text.as_ref())).collect();
     format!("[{}]", quoted.join(","))

@@ -7,7 +7,7 @@ use crate::settings::Settings;
 use zenoh::{Session, Wait};
 
 /// A router.
-#[must_use = "a router runs until `end` is called"]
+#[must_use = "a router ends when this value is dropped"]
 pub struct Router(Session);
 
 impl Router {

@@ -1,6 +1,7 @@
 //! The session of zenoh: where it listens and connects, TLS, and access control. Multicast scouting and gossip are off:
-//! the server speaks only to what is configured. The threads of zenoh are ordinary ones, even if this process was
-//! started with a real-time priority, because they are started by an ordinary thread.
+//! the server listens only at the configured endpoints, and connects only to the configured ones. The threads of zenoh
+//! are ordinary ones, even if this process was started with a real-time priority, because they are started by an
+//! ordinary thread.
 
 use crate::ServeError;
 use crate::endpoint::Endpoint;

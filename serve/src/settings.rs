@@ -125,10 +125,10 @@ impl Settings {
         Self::from_text(&text, path, overrides)
     }
 
-    /// Like [`Settings::read`], from the text of the file.
+    /// Reads the table `[serve]` as [`Settings::read`] does, but from the text of the file.
     ///
     /// # Errors
-    /// Returns the same errors.
+    /// Returns the errors of [`Settings::read`], except those of reading the file.
     pub fn from_text(text: &str, file: &Path, overrides: &Overrides) -> Result<Self, ServeError> {
         let wrong = |wrong: Wrong| ServeError::Settings {
             file: file.into(),
@@ -214,7 +214,7 @@ pub fn client_name(text: &str) -> Result<ClientName, String> {
     check_client(&name).map(|()| name)
 }
 
-/// Checks that the files of the certificate of a client with this name are not hidden.
+/// Checks that this client's certificate files, which are named after the client, are not hidden.
 ///
 /// # Errors
 /// Returns the reason if the name begins with a dot.

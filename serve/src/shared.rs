@@ -21,7 +21,7 @@ pub struct Shared {
     pub desk: Mutex<Desk>,
     /// Whether a request that takes long is in progress.
     pub busy: AtomicBool,
-    /// Whether the server ends. From then on, Requests other than stop are refused.
+    /// Whether the server is ending. An ending server refuses all Requests other than stop.
     pub ending: AtomicBool,
     /// Whether the Requests that were in progress when the server began to end are over: their Answers are in the queue
     /// (see [`crate::answers`]), or have been sent.

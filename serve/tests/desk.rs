@@ -139,7 +139,7 @@ fn a_caught_finger_follows_its_set_point_again_when_a_new_owner_acquires() {
     rig.wait_in_silence("count of the next catch", |rig| rig.desk.counts().caught > before);
 }
 
-/// The server hears nothing while the finger recovers. The next Target has a new part without a place.
+/// The desk receives no Target while the finger recovers. The next Target has a new part without a place.
 #[test]
 fn a_recovered_finger_does_not_return_to_its_earlier_place() {
     let mut rig = Rig::new("end_ms = 20000");

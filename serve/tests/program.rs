@@ -24,7 +24,7 @@ struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It has ended already, except after a failed test.
+        // The program has ended already, except after a failed test.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -111,9 +111,9 @@ fn an_ignored_signal_stays_ignored() {
     let folder = tempfile::tempdir().expect("a folder");
     let port = free_port();
     let (mut running, _) = start(folder.path(), &table(port), || at_hangup(libc::SIG_IGN));
-    // States and exit status do not show whether the server ignores SIGHUP: a server that ends in an orderly way may
-    // still publish States, and its exit status is 0 too. The mask of ignored signals shows it. The lowest bit is that
-    // of signal 1, SIGHUP.
+    // The State messages and the exit status do not show whether the server ignores SIGHUP: a server that ends in an
+    // orderly way may still publish them, and its exit status is 0 too. The mask of ignored signals shows it. Its
+    // lowest bit is that of signal 1, SIGHUP.
     let status = read_to_string(format!("/proc/{}/status", running.0.id())).expect("the status of the process");
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).expect("the ignored signals").trim();
     assert_eq!(u64::from_str_radix(ignored, 16).expect("a mask") & 1, 1, "SIGHUP is not ignored: {ignored}");

@@ -18,14 +18,15 @@ use sun2xp_remote_protocol::{Action, Code, Event, Place};
 /// Longest time from the moment at which a client falls silent until its fingers are caught, cycles.
 const CAUGHT: u64 = 120;
 
-/// Longest time until the fingers are in their end state, cycles.
+/// Longest time from the moment at which a client falls silent until its fingers are in their end state, cycles.
 const ENDED: u64 = 1100;
 
 fn report(rig: &Rig) -> FingerReport {
     rig.hand().report(1).expect("a report")
 }
 
-/// The process of a client, which the tests start. It does nothing unless the tests have set its environment variable.
+/// Other tests start this test alone in a child process, which then is a client. Without the environment variable that
+/// they set, this test does nothing.
 #[test]
 fn client() {
     run_if_child();
@@ -39,7 +40,8 @@ fn signal(child: &Child, signal: i32) {
     assert_eq!(sent, 0);
 }
 
-/// Commands finger 1 from a process, makes this process silent with `fall_silent`, and checks what the fingers do.
+/// Commands finger 1 from a child process, makes this process silent with `fall_silent`, and checks what the finger
+/// does.
 fn falls_silent(fall_silent: impl FnOnce(&mut Child)) {
     let rig = Rig::new("");
     let mut child = start("client", &rig.endpoint);
@@ -149,8 +151,8 @@ fn a_far_target_pulls_with_the_force_of_the_lead_only() {
     rig.server.end();
 }
 
-/// The lead is shorter than the tolerance of an arrival, so the finger counts as arrived at each set point as soon as
-/// the set point is sent.
+/// The lead (how far a set point may be ahead of the finger) is shorter than the tolerance of an arrival. So the finger
+/// counts as arrived at each set point as soon as the set point is sent.
 #[test]
 fn only_the_arrival_at_the_destination_is_published() {
     let rig = Rig::new("lead_force = 0.5\nend_ms = 20000");
@@ -176,7 +178,7 @@ fn only_the_arrival_at_the_destination_is_published() {
         record.command == 1 && record.arrived && (Vector3::from(record.joints) - far).amax() > 2f64.to_radians()
     });
     assert_eq!(early, None, "a record says that the finger has arrived while it is still on the way");
-    // The finger is already where the next command wants it. There is no second Event.
+    // The next command has the same destination, so it causes no second Event. A record still reports the arrival.
     let again = sun2xp_remote_protocol::Part { command: 2, ..part(1, far.into()) };
     alice.repeat_until(&[again], "arrival", |alice| {
         records(alice).any(|record| record.command == 2 && record.arrived).then_some(())

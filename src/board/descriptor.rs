@@ -95,7 +95,7 @@ impl Drop for Descriptor {
     }
 }
 
-/// Returns the number of files that have had this descriptor number, if it is counted.
+/// Returns the counter of the files that have had this descriptor number. Numbers from [`NUMBERED`] up have no counter.
 fn generations(number: RawFd) -> Option<&'static AtomicU32> {
     GENERATIONS.get(usize::try_from(number).ok()?)
 }

@@ -39,8 +39,8 @@ impl LinkCounters {
         self.combined(other, u64::wrapping_add)
     }
 
-    /// Returns these counts minus those of another link, modulo 2^64. A later `wrapping_add` of larger counts makes up
-    /// for a difference below 0.
+    /// Returns these counts minus those of another link, modulo 2^64. A difference below 0 wraps around, and a later
+    /// `wrapping_add` of larger counts wraps it back.
     pub fn wrapping_sub(&self, other: &Self) -> Self {
         self.combined(other, u64::wrapping_sub)
     }

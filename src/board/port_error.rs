@@ -185,7 +185,8 @@ fn failing(source: &io::Error) -> String {
     }
 }
 
-/// [`remedy`] takes EAGAIN for a limit of threads or memory. A call at a port creates no thread.
+/// Returns the result of [`remedy`], but none for EAGAIN. [`remedy`] explains EAGAIN by a limit of threads or memory,
+/// which is not its cause at a port: no call at a port creates a thread.
 fn remedy_at_port(source: &io::Error) -> Option<&'static str> {
     if source.raw_os_error() == Some(libc::EAGAIN) { None } else { remedy(source) }
 }
@@ -238,8 +239,8 @@ mod tests {
         }
     }
 
-    /// The limits of threads belong to the calls that start one, and those of pseudo-terminals to the calls that open
-    /// one.
+    /// Limits of threads affect only calls that start a thread. Limits of pseudo-terminals affect only calls that open
+    /// a pseudo-terminal.
     #[test]
     fn no_error_of_a_port_is_explained_by_a_limit_of_threads_or_of_pseudo_terminals() {
         let path = PathBuf::from("/dev/port");

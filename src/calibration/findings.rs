@@ -4,7 +4,7 @@ use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
 /// The results of one calibration routine.
-// The servo does not use the heap, so all results have the size of the largest ones.
+// The servo does not use the heap, so the large variants are not boxed.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Findings {

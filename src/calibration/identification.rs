@@ -111,8 +111,8 @@ impl Identification {
         }
     }
 
-    /// Runs one cycle of the current phase. The phases follow each other in the order of the match arms. `Seek`
-    /// and `Return` process one joint after the other.
+    /// Runs one cycle of the current phase. The phases follow each other in the order of the match arms. `Oscillate` is
+    /// left out if the rate of the servo is too low for it. `Seek` and `Return` process one joint after the other.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),

@@ -7,8 +7,8 @@ use crate::control::signals::Activity;
 use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
 use nalgebra::{Vector3, Vector4};
 
-/// Time constant of the low-pass filter on the tensions and joint angles, s. The spring uses the filtered angles. Its
-/// damping does not: it uses the joint rates of the controller.
+/// Time constant of the low-pass filter on the tensions and joint angles, s. The spring uses the filtered angles. The
+/// damping uses the joint rates of the controller instead.
 const SMOOTHING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +22,8 @@ pub(super) struct JointGuide {
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
-    /// Common tension that is added to the tensions for the torques, N. The field holds its value in the tendon with
-    /// the smallest pretension. The values in the other tendons are larger in proportion to their pretensions.
+    /// Common tension that is added to the tensions that produce the torques, N. This is the common tension of the
+    /// tendon with the smallest pretension. The common tension of each tendon is proportional to its pretension.
     pub common: f64,
 }
 

@@ -73,7 +73,7 @@ pub enum Obstacle {
     #[error(
         "joint {joint} moved by {degrees:.2} degrees while the pose was read. Keep the finger still in \
          zeroing.pose_degrees (let nothing push it, and if it moves to a set point, wait until it arrives) and zero it \
-         again, or zero it at its stops (zeroing.method = \"stops\", zeroing.lower_stop_degrees, zeroing.upper_stop_degrees)"
+         again, or at its stops (zeroing.method = \"stops\", zeroing.lower_stop_degrees, zeroing.upper_stop_degrees)"
     )]
     Moved {
         /// The joint, 0 to 2.

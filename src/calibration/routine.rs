@@ -36,7 +36,7 @@ pub enum Task {
 }
 
 /// The state of a routine after a cycle.
-// The servo does not use the heap, so every verdict has the size of the largest one.
+// The servo does not use the heap, so the large variants are not boxed.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
@@ -59,7 +59,7 @@ pub struct Calibration {
     in_charge: bool,
 }
 
-// The servo does not use the heap, so every routine has the size of the largest one.
+// The servo does not use the heap, so the large variants are not boxed.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug)]
 enum Routine {
@@ -157,9 +157,9 @@ impl Calibration {
 mod tests {
     use super::*;
 
-    /// With state feedback, only calibrations use `tension_gain` and `tension_integral`. If `docs/sun2xp.toml`, the
-    /// reference of all keys, did not give their values in a calibration, a reader would take the values for Figure 10
-    /// as those in force.
+    /// With state feedback, only calibrations use `tension_gain` and `tension_integral`. So `docs/sun2xp.toml`, the
+    /// reference of all keys, must give the values that these keys have in a calibration. Otherwise a reader would
+    /// believe that a calibration uses the default values of Figure 10.
     #[test]
     fn the_reference_gives_the_gains_of_a_calibration() {
         let controller = Calibration::controlled(&ConfiguredFinger::default(), GENTLE_RATE).controller;

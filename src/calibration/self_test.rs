@@ -2,10 +2,10 @@
 //! tendon, in the configured directions, and every gauge shows the tension.
 //!
 //! First each motor alone pulls until an encoder moves. Then the positions of all motors are controlled. All motors
-//! wind in until the tendons are tight. Each one then pulls for some milliseconds. Its own gauge shows this pull first,
-//! because the links delay the pull at the other gauges. Finally, all motors wind in a little more. The tensions of a
-//! finger that nothing touches rise along the null vector of R, whatever the friction of the motors. So the rises of
-//! the gauges show whether their scales agree.
+//! wind in until the tendons are tight. Then one motor after the other pulls for some milliseconds. The gauge of the
+//! pulling motor shows the pull first, because the links delay the pull at the other gauges. Finally, all motors wind
+//! in a little more. The tensions of a finger that nothing touches rise along the null vector of R (eq. 14: tau = R t),
+//! whatever the friction of the motors. So the rises of the gauges show whether their scales agree.
 
 mod holding;
 mod readings;
@@ -40,7 +40,7 @@ pub(super) struct SelfTest {
     dynamics: LinkDynamics,
 }
 
-// The servo does not use the heap, so every phase has the size of the largest one.
+// The servo does not use the heap, so the larger variant is not boxed.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug)]
 enum Phase {

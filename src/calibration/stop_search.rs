@@ -6,7 +6,7 @@ use super::obstacle::Obstacle;
 use std::f64::consts::PI;
 
 /// A joint in search of a stop moves by at most the width of its range plus this angle, rad. On the way back to the
-/// lower stop, twice this angle is added.
+/// lower stop after a search for the upper stop, it moves by at most the width plus twice this angle.
 pub(super) const BEYOND: f64 = 0.17;
 /// A joint at full torque counts as still while it stays within this angle of one position, rad.
 const STILL: f64 = 0.004;

@@ -16,10 +16,10 @@ use std::ffi::c_int;
 /// Slackens the tendons and reads the gauges. Finds the zero of the encoders by finger.zeroing.method:
 ///
 ///   "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
-///            the start of the call until its encoders have been read. This takes 0.3 s for a finger
-///            that is a spring, whose encoders are read before its tendons are slackened, and some
-///            seconds for a limp finger. A jig or a person must hold a limp finger. A finger that moves
-///            is refused, and so is a limp finger that nothing holds.
+///            the start of the call until its encoders have been read. For a finger that is a spring,
+///            this takes 0.3 s, because its encoders are read before its tendons are slackened. For a
+///            limp finger, it takes some seconds. A jig or a person must hold a limp finger. A finger
+///            that moves is refused, and so is a limp finger that nothing holds.
 ///   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
 ///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
 ///
@@ -42,7 +42,7 @@ use std::ffi::c_int;
 ///              they are in force until sun2xp_close and not stored
 ///   EIO        the finger is faulted. If it faulted after its zeros were found, they are in force. The next
 ///              sun2xp_identify that succeeds for this finger stores them. If a sun2xp_zero succeeds before
-///              that, it stores the zeros that it has found instead
+///              that, its own zeros replace them and are stored
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
 ///              joint meets no stop or meets it too early ...). sun2xp_error_text gives the remedy. The finger

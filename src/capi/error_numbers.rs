@@ -20,7 +20,7 @@ pub const SUN2XP_ERROR_NO_HAND: c_int = 4;
 /// sun2xp_send_path computed a path that begins at this pose; or 16 groups of sun2xp_send_group have not taken effect
 /// yet. Call again later. If a finger is limp (SUN2XP_STATE_LIMP), zero it first. Three other calls get this number
 /// too: OpenHand while its hand is open, sun2xp_set_log in the log callback, and a call for a hand on another machine
-/// that another client commands.
+/// if another client commands this hand.
 pub const SUN2XP_ERROR_BUSY: c_int = 5;
 
 /// Too many hands or reflexes.
@@ -115,7 +115,7 @@ pub fn of_hand(error: &HandError) -> c_int {
     }
 }
 
-/// The number of a reason that is distinguished from the other reasons of its type only by its errno.
+/// The number of an error whose type has several reasons. The errno of the error determines the number.
 fn by_errno(errno: c_int) -> c_int {
     match errno {
         libc::ERANGE | libc::EDOM => SUN2XP_ERROR_LIMIT,

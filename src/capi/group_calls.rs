@@ -16,11 +16,11 @@ use crate::model::configuration::FINGERS;
 use std::ffi::c_int;
 use std::time::Duration;
 
-/// Since the set point sent last took effect, there was a cycle in which every joint was within
+/// Since the set point that was sent last took effect, there was a cycle in which every joint was within
 /// finger.events.arrived_degrees of this set point.
 pub const SUN2XP_WAIT_ARRIVED: c_int = 1;
 
-/// Since the set point sent last took effect, there was a time of finger.events.settled_ms in which no joint
+/// Since the set point that was sent last took effect, there was a time of finger.events.settled_ms in which no joint
 /// moved by more than finger.events.settled_degrees.
 pub const SUN2XP_WAIT_SETTLED: c_int = 2;
 

@@ -166,7 +166,8 @@ mod tests {
     use std::sync::mpsc::channel;
     use std::thread;
 
-    /// A callback that runs can remove a listener whose thread waits for the lock `calling` at this time.
+    /// A callback that runs can remove another listener while the thread of that listener waits for the lock `calling`.
+    /// The removed listener must not call its function when it gets the lock.
     #[test]
     fn a_removed_callback_is_not_called() {
         let (finger, kind, part) = (FingerNumber::ONE, EventKind::Settled, Part::Finger);

@@ -242,8 +242,9 @@ pub(super) fn command<T, E: Into<Refusal>>(
     with(handle, call)
 }
 
-/// Commands a finger of an open hand. For a hand of this machine it runs `local`. To a hand on another machine it sends
-/// the command that `command` returns. The call is refused while the process exits, as [`command`] is.
+/// Commands a finger of an open hand. If the hand is on this machine, runs `local`. If the hand is on another machine,
+/// calls `command`, and sends the result to the hand. While the process exits, the call is refused, as in the function
+/// [`command`].
 #[inline]
 pub(super) fn send<E: Into<Refusal>>(
     handle: Handle,

@@ -2,7 +2,7 @@
 //!
 //! A handle is a pointer by its type only. Its value contains a tag, the number of the hand among those that the
 //! process has opened, and the place of the hand in the table. The number has 40 bits (16 on 32-bit machines), and
-//! repeats after 2^40 (2^16) hands. Nothing dereferences a handle, so a null, foreign or closed handle is refused.
+//! repeats after 2^40 (2^16) hands. Nothing dereferences a handle, so a null, foreign or closed one can be refused.
 
 use std::ptr::without_provenance_mut;
 
@@ -18,7 +18,7 @@ pub struct sun2xp_hand {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Handle(usize);
 
-/// Largest number of hands of sun2xp_open that can be open at the same time.
+/// Largest number of hands, opened with sun2xp_open, that can be open at the same time.
 pub(super) const MOST_HANDS: usize = 16;
 
 /// The place of the hand of OpenHand in the table.

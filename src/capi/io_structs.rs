@@ -82,8 +82,9 @@ pub struct sun2xp_io_sample {
     pub tensions: [f64; 4],
     /// Counts of the motor encoders.
     pub encoders: [c_int; 4],
-    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, except
-    /// SUN2XP_IO_ZERO_LOST if all samples since start was called at opening have had it.
+    /// Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops the finger with a fault, with one exception:
+    /// SUN2XP_IO_ZERO_LOST does not stop the finger if every sample since the call of start at opening has had this
+    /// bit.
     pub faults: c_uint,
 }
 

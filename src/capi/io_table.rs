@@ -118,7 +118,7 @@ pub(super) unsafe fn load(number: c_int, io: *const sun2xp_io) -> Result<HandIo,
         if by_finger[finger.index()].replace(table).is_some() {
             return Err(Refusal::IoTwice(finger));
         }
-        // A range contains no NaN.
+        // No range contains NaN, so NaN is refused too.
         if !(0.0..).contains(&table.shortest_watchdog) {
             return Err(Refusal::IoWatchdog { finger, seconds: table.shortest_watchdog });
         }
@@ -152,7 +152,8 @@ fn from_table(table: &sun2xp_io) -> Result<IoTable, Refusal> {
 }
 
 /// Rounds a time up to milliseconds. Rounding errors can make a time slightly longer than the program intends: 9 * 1e-3
-/// is more than 9 ms. The conversion saturates, and a time that is too long is refused when the terms are agreed.
+/// is more than 9 ms. An excess of at most `INEXACT_MS` is therefore ignored. The conversion saturates, and a time that
+/// is too long is refused when the terms are agreed.
 fn whole_milliseconds(seconds: f64) -> u16 {
     const INEXACT_MS: f64 = 1e-4;
     (seconds * 1e3 - INEXACT_MS).ceil() as u16

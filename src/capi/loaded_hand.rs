@@ -50,7 +50,8 @@ pub(super) fn open(source: RemoteSource, _: &Configuration) -> Result<Arc<dyn Re
     if result != 0 {
         return Err(last_refusal(library, null()));
     }
-    // Until the library was loaded, `stop_all` did not reach it.
+    // A call of `stop_all` during this opening may have come before the library was loaded, and then did not reach the
+    // library. So it is repeated here.
     if stop_calls() != stop_calls_seen {
         (library.stop_all)();
     }

@@ -1,6 +1,6 @@
 //! The exported function for messages. Its doc comment is the C manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_camel_case_types)]
 
 use crate::capi::boundary::guarded;
@@ -38,10 +38,11 @@ thread_local! {
 ///   user       third argument of each call of the function
 ///
 /// If there is a callback, the library calls it with each message, and prints nothing, except while
-/// sun2xp_set_log replaces the callback. The library calls it in a thread whose call is refused (the first
-/// refusal of each kind, unless hand.print_refusals is false), and in threads of the library that are not
-/// real-time, for example in the one that opens a hand. Several threads may call the callback at the same
-/// time. The callback must make no calls of the library, and must return. The text is valid only until the
+/// sun2xp_set_log replaces the callback. The library calls it in a thread whose call is refused, and in
+/// threads of the library that are not real-time, for example in the one that opens a hand. Of the refusals,
+/// only the first of each kind in a process is a message. If hand.print_refusals is false for a hand, the
+/// refusals of calls for this hand are no messages. Several threads may call the callback at the same time.
+/// The callback must make no calls of the library, and must return. The text is valid only until the
 /// callback returns. There is one callback for all hands of the process.
 ///
 /// When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message

@@ -16,7 +16,7 @@ pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
 }
 
-/// Copies a matrix of the caller, row by row, as [`load`] copies an array.
+/// Copies a matrix of the caller in row-major order. Like the array of [`load`], it may be unaligned.
 ///
 /// # Safety
 /// `matrix` is null or points to three rows of three entries.

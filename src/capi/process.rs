@@ -9,8 +9,8 @@ use std::sync::OnceLock;
 /// Function that the exit handler calls. The first call that opens a hand sets it.
 static CLOSE: OnceLock<fn()> = OnceLock::new();
 
-/// Registers the handlers of fork and exit, and replaces closed standard descriptors. It must be called at every
-/// open, because a planner may have closed a descriptor since the previous open. The exit handler calls `close`.
+/// Registers the handlers of fork and exit, and replaces closed standard descriptors. This function must be called at
+/// every open, because a planner may have closed a descriptor since the previous open. The exit handler calls `close`.
 pub(super) fn prepare(close: fn()) {
     replace_closed_standard_descriptors();
     // Handlers cannot be unregistered, so they are registered once.

@@ -71,8 +71,7 @@ pub const SUN2XP_THEN_DAMP: c_int = 6;
 /// After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
 /// SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
 /// harder; 0, 0, 0 stands for the direction in which its spring presses. If the component of the spring's
-/// force in the given direction, or in the one that 0, 0, 0 stands for, is below 0.05 N, the reaction changes
-/// no set point, but a path still ends.
+/// force in this direction is below 0.05 N, the reaction changes no set point, but a path still ends.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_reflex {
@@ -164,7 +163,7 @@ pub unsafe extern "C" fn sun2xp_install_reflex(
             rule.check()?;
             // SAFETY: the size is right, as checked above, and there is a first struct.
             let rule = unsafe { rule.load(0) };
-            number = hand.install_reflex_with(finger, from_c(&rule)?, rule.priority)? as c_int;
+            number = hand.install_reflex_with(finger, from_c(finger, &rule)?, rule.priority)? as c_int;
             Ok(())
         })
     });
@@ -199,10 +198,10 @@ pub extern "C" fn sun2xp_remove_reflex(hand: *mut sun2xp_hand, finger: c_int, nu
     })
 }
 
-/// Converts a rule, except its priority.
-fn from_c(rule: &sun2xp_reflex) -> Result<crate::finger::Reflex, HandError> {
+/// Converts a rule for a finger, except its priority.
+fn from_c(finger: c_int, rule: &sun2xp_reflex) -> Result<crate::finger::Reflex, HandError> {
     Ok(crate::finger::Reflex {
-        condition: condition(rule)?,
+        condition: condition(FingerNumber::try_from(finger)?, rule)?,
         reaction: reaction(rule)?,
         priority: 0,
         refractory: rule.refractory,
@@ -210,10 +209,12 @@ fn from_c(rule: &sun2xp_reflex) -> Result<crate::finger::Reflex, HandError> {
     })
 }
 
-fn condition(rule: &sun2xp_reflex) -> Result<Condition, HandError> {
+fn condition(finger: FingerNumber, rule: &sun2xp_reflex) -> Result<Condition, HandError> {
     let bound = rule.bound;
-    // A negative number is no joint either.
-    let joint = usize::try_from(rule.joint).unwrap_or(usize::MAX);
+    let joint = || {
+        let refused = ReflexError::NoSuchJoint { finger, joint: rule.joint.into() };
+        usize::try_from(rule.joint).map_err(|_| refused)
+    };
     Ok(match rule.condition {
         SUN2XP_WHEN_EVENT => Condition::Event(event(rule.event)?),
         SUN2XP_WHEN_OTHER_FINGER => {
@@ -222,8 +223,8 @@ fn condition(rule: &sun2xp_reflex) -> Result<Condition, HandError> {
         SUN2XP_WHEN_FORCE_ABOVE => Condition::ForceAbove(bound),
         SUN2XP_WHEN_TENSION_ABOVE => Condition::TensionAbove(bound),
         SUN2XP_WHEN_TENSION_BELOW => Condition::TensionBelow(bound),
-        SUN2XP_WHEN_JOINT_ABOVE => Condition::JointAbove { joint, angle: bound },
-        SUN2XP_WHEN_JOINT_BELOW => Condition::JointBelow { joint, angle: bound },
+        SUN2XP_WHEN_JOINT_ABOVE => Condition::JointAbove { joint: joint()?, angle: bound },
+        SUN2XP_WHEN_JOINT_BELOW => Condition::JointBelow { joint: joint()?, angle: bound },
         SUN2XP_WHEN_LINK_LOST => Condition::LinkLost(bound),
         SUN2XP_WHEN_PLANNER_SILENT => Condition::PlannerSilent(bound),
         number => return Err(ReflexError::NoSuchKind { what: "condition", number, prefix: "SUN2XP_WHEN_" }.into()),

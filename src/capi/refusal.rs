@@ -140,7 +140,7 @@ impl Refusal {
         }
     }
 
-    /// The operations of the library that remedy the refusal, in their order.
+    /// The operations of the library that remedy the refusal, in the order of their use.
     pub fn actions(&self) -> &[Action] {
         match self {
             Self::NoHand => &[Action::Open],

@@ -103,7 +103,7 @@ static OVER_THE_NETWORK: OnceLock<RemoteOpener> = OnceLock::new();
 
 /// Makes this library open only hands on other machines, with this opener. Only the first call has an effect.
 pub fn open_only_remote_hands(opener: RemoteOpener) {
-    // A second call comes from a library that was initialised twice, with the same function.
+    // Only a library that is initialised twice makes a second call, and it passes the same function again.
     let _ = OVER_THE_NETWORK.set(opener);
 }
 

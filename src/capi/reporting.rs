@@ -85,8 +85,8 @@ fn is_printed(name: &str, handle: Handle, interface: Interface) -> bool {
     }
 }
 
-/// Sets whether the refusals of calls for this hand are printed. The hand has been opened, and the program does not
-/// have its handle yet.
+/// Sets whether the refusals of calls for this hand are printed. This function is called after the hand was opened, and
+/// before the program has its handle.
 pub(super) fn set_printing(handle: Handle, on: bool) {
     if let Some(silent) = handle.place().and_then(|place| SILENT.get(place)) {
         silent.store(if on { 0 } else { handle.value() }, Ordering::Relaxed);

@@ -58,8 +58,8 @@ pub struct sun2xp_status {
     pub torque_scale: f64,
     /// Cycles since sun2xp_open.
     pub cycles: c_ulong,
-    /// Whole periods in which no cycle began because the previous cycle was not over or the servo thread did not run,
-    /// up to now. One late cycle may skip many.
+    /// Whole periods, up to now, in which no cycle began because the previous cycle was not over or the servo thread
+    /// did not run. One late cycle may skip many.
     pub skipped_periods: c_ulong,
     /// Cycles without a valid reply in time.
     pub lost_replies: c_ulong,

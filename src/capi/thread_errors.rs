@@ -6,8 +6,8 @@ use std::cell::RefCell;
 use std::ffi::{c_char, c_int};
 use std::fmt::Display;
 
-/// Number of hands whose last refusal a thread remembers. More would enlarge the thread-local data of every thread of
-/// the planner.
+/// Number of hands whose last refusal a thread remembers. A larger number would enlarge the thread-local data of every
+/// thread of the planner.
 pub(super) const REMEMBERED: usize = 4;
 
 /// Room for a text, bytes. The texts of the library are shorter, because they abbreviate what they quote.
@@ -83,9 +83,9 @@ impl Errors {
     }
 }
 
-/// Stores a refusal of the calling thread. Returns false if another call of this thread is using the refusals: a signal
-/// handler has interrupted that call and makes a call that it may not make, or a log callback makes a call. errno still
-/// reports such a refusal.
+/// Stores a refusal of the calling thread. Returns false if another call of this thread is using the refusals. This
+/// happens if a log callback makes a call, or if a signal handler interrupts that other call and makes a call that is
+/// forbidden in signal handlers. errno still reports such a refusal.
 pub(super) fn store(
     handle: Handle,
     number: c_int,
@@ -114,7 +114,7 @@ pub(super) fn with_newest_text(call: impl FnOnce(&str)) {
     });
 }
 
-/// The last refusal of the calling thread for a hand, or of any hand if the handle is null.
+/// The last refusal of the calling thread for a hand, or for any hand if the handle is null.
 pub(super) fn find(handle: Handle) -> Found {
     ERRORS.with(|errors| {
         let none = || Found { number: 0, errno: 0, call: c"".as_ptr(), text: c"".as_ptr(), remedy: c"".as_ptr() };

@@ -65,8 +65,8 @@ pub struct sun2xp_timing {
     pub cycles: c_ulong,
     /// Cycles that were not over when the next one was due.
     pub overruns: c_ulong,
-    /// Whole periods in which no cycle began because the previous cycle was not over or the servo thread did not run,
-    /// up to the last cycle.
+    /// Whole periods, up to the last cycle, in which no cycle began because the previous cycle was not over or the
+    /// servo thread did not run.
     pub skipped_periods: c_ulong,
     /// Cycles without a valid reply in time.
     pub lost_replies: c_ulong,

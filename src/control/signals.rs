@@ -39,8 +39,8 @@ pub struct SetPoint {
     /// Damping relative to the damping that the controller computes from the stiffness.
     /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) defines the permitted range.
     pub damping: f64,
-    /// The motion of `joints`. If it is given, the controller follows the set point without a lag. It is none for a set
-    /// point at rest. The controller itself smooths the steps of such a set point.
+    /// The motion of `joints`; none for a set point at rest. With this motion, the controller follows the set point
+    /// without a lag. Without it, the controller smooths each step of the set point.
     #[serde(default)]
     pub motion: Option<Motion>,
     /// The spring in joint angles that acts in addition to `stiffness`; none if there is no such spring.
@@ -146,10 +146,11 @@ pub struct Report {
     pub torque_scale: f64,
     /// The fraction of the set point's stiffness that the pose supports, 0 to 1.
     pub stiffness_scale: f64,
-    /// Whether every tendon has a tension of at least 0.8 t_min and the motors are at rest. While slack is taken up,
-    /// this is true only after the tensions have reached the pretension.
+    /// Whether every tendon has a tension of at least 0.8 t_min and the motors are at rest. During
+    /// [`Activity::TakeUpSlack`], this is true only after the tensions have reached the pretension.
     pub under_tension: bool,
-    /// The tendon that is farthest from being under tension, 0 to 3. This value is valid only while slack is taken up.
+    /// The tendon that is farthest from being under tension, 0 to 3. This value is valid only during
+    /// [`Activity::TakeUpSlack`] and [`Activity::Tighten`].
     pub slackest: usize,
     /// Commanded motor torques, N cm.
     pub motor_torques: Vector4<f64>,

@@ -42,8 +42,8 @@ use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
 /// Largest number of consecutive lost replies or skipped periods for which the predictions are used. After more losses,
-/// the command stays constant, and the next reply restarts the observers. With a limit of 20, one of five fingers lost
-/// all its tensions when the servo occasionally did not run for 12 ms.
+/// the command stays constant, and the next reply restarts the observers. A limit of 20 was tried with five fingers
+/// whose servo occasionally did not run for 12 ms. One of them lost all its tensions.
 const BLIND: u32 = 4;
 
 /// The control law, in SI units. The tension distribution and the spring use N cm.
@@ -188,8 +188,8 @@ impl StateFeedback {
         self.reference.take_over(&previous.reference, &mut state.reference, &mut state.anchor, &mut state.along);
     }
 
-    /// Notes that the next set point, rad, with this motion, begins a path. It replaces a set point that may have moved
-    /// differently.
+    /// Notes that a path begins with the next set point, which has these joint angles, rad, and this motion. The last
+    /// set point may have moved differently.
     pub fn begin_path(&self, state: &mut StateFeedbackState, joints: &Vector3<f64>, motion: &Motion) {
         self.reference.replace_along(&mut state.along, joints, motion, self.period);
     }

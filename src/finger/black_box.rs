@@ -3,7 +3,7 @@
 //!
 //! A replay needs the state of the controller before the first record. The servo therefore writes a copy of the state,
 //! a keyframe, eight times a second, and the kept records begin at a keyframe. Two alternatives were rejected: the
-//! state in every record takes three times the memory, and a second controller that follows two seconds behind computes
+//! state in every record takes four times the memory, and a second controller that follows two seconds behind computes
 //! everything twice.
 
 use crate::control::State;
@@ -154,8 +154,8 @@ impl BlackBox {
         }
     }
 
-    /// Takes the servo's records, and appends those of the cycles after `cycle` to `records`. It looks at no other
-    /// records, so it may be called in every period.
+    /// Takes the servo's records, and appends those of the cycles after `cycle` to `records`. It does not go through
+    /// all kept records, so it is fast enough to be called in every period.
     pub fn take_after(&mut self, cycle: u64, records: &mut Vec<CycleRecord>) {
         self.take();
         let after = self.records.partition_point(|record| record.cycle <= cycle);

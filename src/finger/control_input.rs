@@ -28,7 +28,7 @@ pub struct ControlInput {
 }
 
 impl ControlInput {
-    /// Returns the command and the controller's report. `previous` is the controller that this one replaces in this
+    /// Returns the command and the controller's report. `previous` is the controller that `controller` replaces in this
     /// cycle. `feedback` is none if the reply was lost.
     pub fn run(
         &self,

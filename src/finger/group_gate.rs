@@ -56,11 +56,11 @@ impl GroupGate {
     /// `now` returns the number of the present period.
     ///
     /// The result is the same for every servo, and no servo has begun that period before the group was posted:
-    /// - A servo reads the time after it has seen the posted group. If another servo begins a cycle without seeing it,
-    ///   that cycle is in the present period or an earlier one.
+    /// - A servo calls `now` after it has seen the posted group. If another servo begins a cycle without seeing the
+    ///   group, that cycle is in the present period or an earlier one.
     /// - A servo that sees the posted group cannot leave the period undecided. If the first servo is preempted before
-    ///   it decides, the next servo that sees the group decides. So the period
-    ///   is decided before any servo that has seen the group begins a later cycle.
+    ///   it decides, the next servo that sees the group decides. So the period is decided before any servo that has
+    ///   seen the group begins a later cycle.
     pub(super) fn period(&self, group: u64, now: impl FnOnce() -> u64) -> Option<u64> {
         let state = self.state(group).load(Ordering::Acquire);
         // The difference of the tags, as a signed number.

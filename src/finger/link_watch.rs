@@ -1,8 +1,8 @@
 //! The reaction to lost replies in a row. First the last command is held, or continued by prediction. Then the motor
 //! torques fade to their final values: the last torques, limited to what the end state keeps. Finally the finger
 //! faults, before the watchdog of its board trips. A fault needs at least two lost replies, and its Stop is sent at
-//! least three periods after the last good reply. So a watchdog of less than three periods can trip earlier. It does if
-//! the commands are lost too.
+//! least three periods after the last good reply. So a watchdog of less than three periods trips before the Stop if the
+//! commands are lost too.
 
 use crate::model::configuration::{ConfiguredHand, EndState};
 use nalgebra::Vector4;
@@ -101,9 +101,9 @@ impl LinkWatch {
 
     /// Returns whether the finger and its controller run in step, as built-in simulated fingers do. If they do, the
     /// next command is sent only after the reply to the last one, however late the reply is. In a cycle without a
-    /// reply, the controller does not run and the simulated finger does not move. Otherwise, on a busy machine, the
-    /// controller would count time that did not pass at the finger, or the physics would run without its controller.
-    /// The finger would then move wildly.
+    /// reply, the controller does not run and the simulated finger does not move. If they did not run in step, a busy
+    /// machine could let the controller count time that did not pass at the finger, or let the physics run without its
+    /// controller. The finger would then move wildly.
     pub fn in_step(&self) -> bool {
         self.simulated
     }

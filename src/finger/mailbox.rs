@@ -80,8 +80,8 @@ pub(super) struct ServoEnd {
     requests: SharedPages<Requests>,
 }
 
-/// Creates a mailbox with `report`, its set point, `adjustable` and `gravity` at both ends. Also returns the memory
-/// that both ends share.
+/// Creates a mailbox. Both ends begin with `report`, the set point of `report`, `adjustable` and `gravity`. Also
+/// returns the memory that both ends share.
 pub(super) fn mailbox(
     report: FingerReport,
     adjustable: &Adjustable,
@@ -156,9 +156,9 @@ impl Mailbox {
         use_report(self.planners.lock().reports.read())
     }
 
-    /// Returns whether the servo has finished with the finger, or none while a planner's call uses the mailbox. That
-    /// call may be one that a signal handler of the calling thread has interrupted, and waiting for it would be a
-    /// deadlock.
+    /// Returns whether the servo has finished with the finger, or none while a planner's call uses the mailbox. A
+    /// signal handler may call this function after it has interrupted such a call in its own thread. Waiting for the
+    /// interrupted call would be a deadlock.
     pub fn ended(&self) -> Option<bool> {
         let mut planners = self.planners.try_lock()?;
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))

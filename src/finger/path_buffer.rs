@@ -19,9 +19,9 @@ pub(super) struct PathBuffer {
     /// The period of the servo in which the path begins, as in [`Reference::period`](crate::finger::Reference::period).
     pub origin: u64,
     /// The stiffness with which the path begins, as in [`SetPoint::stiffness`](crate::control::SetPoint::stiffness);
-    /// none if the path begins with the stiffness in force. The path carries the stiffness, because a
-    /// planner may have sent a set point with this stiffness shortly before the path. The mailbox keeps only the newest
-    /// set point, so the servo may never get the earlier one.
+    /// none if the path begins with the stiffness in force. The path carries the stiffness, because a planner may have
+    /// sent a set point with this stiffness shortly before the path. The mailbox keeps only the newest set point, so
+    /// the servo may never get the earlier one.
     pub begin: Option<Matrix6<f64>>,
     pieces: Pages<[Piece]>,
     piece_count: usize,

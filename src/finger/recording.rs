@@ -18,8 +18,8 @@ use thiserror::Error;
 /// Version of the format.
 const VERSION: u32 = 1;
 
-/// The last sentence of an error about content that the library does not write into a recorded file. It tells the cause
-/// and the remedy.
+/// The last sentence of an error about a file with content that the library never writes. It gives the cause and the
+/// remedy.
 pub const ALTERED: &str = "The file was altered or damaged after it was written: copy it again";
 
 /// Consecutive cycles of a finger, and everything that is needed to compute them again.
@@ -30,7 +30,8 @@ pub struct Recording {
     pub origin: Origin,
     /// Version of the library that made the recording.
     pub library: String,
-    /// Time since 1970 minus the time of the monotonic clock, ns. It converts the times of the cycles.
+    /// Time since 1970 minus the time of the monotonic clock, ns. Added to the time of a cycle, it gives the time
+    /// since 1970.
     pub clock_offset: i64,
     /// The cycles, without a gap.
     pub cycles: Vec<CycleRecord<String>>,
@@ -122,7 +123,7 @@ pub enum RecordingError {
     },
 }
 
-/// Returns the cause and the remedy of a wrong line. Versions of the library record different data.
+/// Returns the cause and the remedy of a wrong line. Different versions of the library record different data.
 fn written_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
         own if own == library => format!(". {ALTERED}"),

@@ -25,10 +25,10 @@ pub(super) struct SentSetPoint {
     /// Number of the finger's newest group, 0 if there is none. The set point includes the values of that group, so it
     /// must not take effect before the group does.
     pub group: u64,
-    /// Number of the set point, counted by the planners' end.
+    /// Number of the set point, counted by the planners' end of the mailbox.
     pub number: u32,
-    /// Number of the last set point that a planner has sent. It is lower than `number` if the library has corrected
-    /// that set point since. The validity is that of the planner's set point.
+    /// Number of the last set point that a planner has sent, to which `valid` belongs. It is lower than `number` if the
+    /// library has corrected that set point since.
     pub planned: u32,
     /// The set point. If there is a path, it holds the end of the path.
     pub set_point: SetPoint,

@@ -44,8 +44,8 @@ impl<T: Transport> ServedPort<T> {
         self
     }
 
-    /// Makes the servo release the link for repair through `handover` when all fingers of the port have faulted. The
-    /// servo also relays the handshakes of single fingers.
+    /// When all fingers of the port have faulted, the servo passes the link on through `handover`, so that the link can
+    /// be repaired. The servo also relays the handshakes of single fingers.
     pub fn with_handover(mut self, handover: LinkServoEnd<T>) -> Self {
         self.handover = Some(handover);
         self
@@ -167,7 +167,7 @@ impl<T: Transport> ServedPort<T> {
             let mut allowance = Allowance::for_replies(touch_deadline);
             while self.fingers.iter().any(FingerServo::awaits_touch) && self.receive_one(&mut allowance, sent, clock) {}
         }
-        // The servo does not wait for the answer to a relayed request, which may come in a later period.
+        // The answer to a relayed request may come in a later period, so the servo does not wait for it.
         let mut arrived = Allowance::for_replies(0);
         while self.link.as_ref().is_some_and(Link::awaits_relayed) && self.receive_one(&mut arrived, sent, clock) {}
     }

@@ -8,8 +8,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// The part of a period, from the wake-up of the thread, in which replies are awaited. The rest is for computing.
 pub const REPLY_WINDOW: f64 = 0.85;
 
-/// Time in which a board must confirm its end state, ns. It permits two attempts. Without a Stop frame, the watchdog of
-/// the board has the same effect.
+/// Time in which a board must confirm its end state, ns. It permits two attempts. If no Stop frame reaches the board,
+/// the watchdog of the board makes its fingers enter the end state.
 const CONFIRMATION: u64 = 100_000_000;
 
 /// One to three fingers on one to three ports, run by one thread.

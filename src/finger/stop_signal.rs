@@ -18,7 +18,7 @@ pub fn stop_all() {
     CALLS.fetch_add(1, Ordering::SeqCst);
 }
 
-/// Number of emergency stop calls so far. A finger that starts with this number stops at the next call.
+/// Number of emergency stop calls so far. A finger whose [`StopSignal`] begins with this number stops at the next call.
 pub fn stop_calls() -> u32 {
     CALLS.load(Ordering::SeqCst)
 }

@@ -163,7 +163,7 @@ impl Calibrating {
         let mut configuration = hand.configuration.write();
         let mut changed = configuration.clone();
         found.apply(&mut changed.fingers[finger.index()]);
-        // An earlier adjustment may have set the bound below the initial stiffness. This check permits that.
+        // An earlier adjustment may have set `stiffness.bound` below the initial stiffness. This check permits that.
         changed.check()?;
         let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
         let limp = self.stays_limp;

@@ -45,7 +45,7 @@ pub struct Configured {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or used. It is also an error if `SUN2XP_CONFIG` names a missing file, or
-/// is set although it is not trusted: a planner that expects a real hand must never get the simulation instead.
+/// is set for a program that must not use it: a planner that expects a real hand must never get the simulation instead.
 pub fn find_configuration() -> Result<Configured, ConfigurationError> {
     Configured::find_with_io(FingersWithIo::default())
 }
@@ -142,8 +142,8 @@ impl Configured {
         self
     }
 
-    /// Refuses a configuration with a table `[remote]`, for programs that open only hands of this machine. Its fingers
-    /// have no ports, so such a program would open a simulated hand instead.
+    /// Refuses a configuration with a table `[remote]`, for programs that open only hands of this machine. The fingers
+    /// of such a configuration have no ports, so the program would open a simulated hand instead.
     ///
     /// # Errors
     /// Returns [`ConfigurationError::Remote`] if there is such a table.
@@ -160,8 +160,8 @@ impl Configured {
         self.said.ports[finger.index()] = true;
     }
 
-    /// Reports a message of one line if some of these fingers are simulated although the configuration does not request
-    /// it. The line names them.
+    /// Reports in one line that some of these fingers are simulated although the configuration does not request it. If
+    /// there is a configuration file, the line names the fingers.
     pub fn announce(&self, fingers: Fingers) {
         if let Some(line) = self.announcement(fingers) {
             print_notice(&line);

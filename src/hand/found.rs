@@ -49,8 +49,8 @@ pub struct Found {
     values: Vec<FoundValue>,
     /// Keys and tables of keys that the values depend on.
     held_by: &'static [&'static str],
-    /// The values of the keys in `held_by` when the results were found, rounded as in the file. The hand keeps all
-    /// digits of earlier results, and the file does not.
+    /// The values of the keys in `held_by` when the results were found, rounded as in the file. They are rounded
+    /// because the hand keeps all digits of earlier results, and the file does not.
     holds_for: BTreeMap<String, String>,
     /// The fingers whose hardware the program provided. Their ports and boards in the file do not matter.
     with_io: FingersWithIo,

@@ -7,7 +7,7 @@ use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredGau
 use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfiguration};
 use std::path::Path;
 
-/// Largest ratio of a gauge's calibrated scale to the step in which tensions are stored, and of this step to the scale.
+/// Largest factor between a gauge's calibrated scale and the step in which tensions are stored, in either direction.
 /// The hardware gives tensions in N, so a calibration changes the scale of a gauge by only some per cent.
 const LARGEST_RATIO: f64 = 2.0;
 

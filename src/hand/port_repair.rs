@@ -24,7 +24,7 @@ pub(super) struct PortRepair {
     handover: LinkRepairEnd<Connection>,
     /// Whether the servo has released its link and has not got it back.
     released: bool,
-    /// The released link or a new one; `None` while the port is gone.
+    /// The released link or a new one. `None` while the servo has the link, and while the port is gone.
     link: Option<Link<Connection>>,
     /// Whether the boards are known to be the same as at open. Either the link has not failed, or the boards have
     /// answered after its failure, and their identities were the same as at open.
@@ -124,8 +124,8 @@ impl PortRepair {
         Ok(Link::new(Connection::from(port)))
     }
 
-    /// Gives the link back to the servo, and makes every finger of the port recover. For each finger, `stops` has the
-    /// numbers of requests to stop that were made before the recovery began, in the order of the boards.
+    /// Gives the link back to the servo, and makes every finger of the port recover. For each finger, in the order of
+    /// the boards, `stops` has the counts of stop requests and faults before the recovery began.
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stops: &[StopCounts; FINGERS]) {
         if let Some(link) = self.link.take() {
             self.released = false;
@@ -141,8 +141,8 @@ impl PortRepair {
     }
 
     /// Shakes hands with the board at `place` while the servo keeps the link, because other fingers of the port run.
-    /// Then makes that finger recover. `stops` has the numbers of requests to stop that were made before the recovery
-    /// began. `repairs` counts the repairs of the finger. Returns false if another finger still waits for its servo.
+    /// Then makes that finger recover. `stops` has the counts of stop requests and faults before the recovery began.
+    /// `repairs` counts the repairs of the finger. Returns false if another finger still waits for its servo.
     pub fn restore_beside_others(
         &mut self,
         place: usize,

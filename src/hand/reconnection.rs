@@ -21,7 +21,7 @@ pub(super) struct RepairablePort {
     pub fingers: Vec<FingerNumber>,
     /// For each finger, in the order of `fingers`: the number of repairs that included the finger. The servo counts the
     /// recoveries of each finger. After a repair, the finger has more repairs than recoveries until the servo takes the
-    /// finger.
+    /// finger back.
     pub repairs: [AtomicU32; FINGERS],
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,

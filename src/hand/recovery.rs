@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 /// Interval at which a recovery is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// Time after which a servo that does not respond is considered stalled. A servo releases or takes back a link, or
-/// takes a finger, within some cycles.
+/// Time after which a servo that does not respond is considered stalled. A servo that runs needs only some cycles to
+/// release a link, or to take back a link or a repaired finger.
 const STALL_LIMIT: Duration = Duration::from_secs(5);
 
 /// A recovery in progress. It has three steps: begin, reconnect and poll. Only `reconnect` takes long, and it does not
@@ -31,8 +31,8 @@ pub struct Recovering {
     finger: FingerNumber,
     /// `None` if the finger is not faulted. Then there is nothing to repair.
     task: Option<Task>,
-    /// Time of the first poll. The time limit for the servo to take the finger counts from here, because `reconnect`
-    /// may have taken long.
+    /// Time of the first poll. The time limit within which the servo must take back the finger counts from here,
+    /// because `reconnect` may have taken long.
     polled: OnceLock<Instant>,
 }
 

@@ -85,6 +85,7 @@ impl Hand {
             }
             Condition::JointAbove { joint, angle } | Condition::JointBelow { joint, angle } => {
                 if joint > 2 {
+                    let joint = i64::try_from(joint).unwrap_or(i64::MAX);
                     return Err(ReflexError::NoSuchJoint { finger, joint }.into());
                 }
                 within(finger, "angle", angle, -WIDEST, WIDEST, " rad")?;

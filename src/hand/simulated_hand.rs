@@ -20,7 +20,7 @@ const SIMULATED_BOARD_PRIORITY: u8 = 20;
 pub struct SimulatedHand {
     /// Boards with a thread each. There are none if the hand has an object.
     separate: [Option<SimulatedPort>; FINGERS],
-    /// Boards whose fingers touch an object, with one thread.
+    /// Boards whose fingers can touch the object. One thread runs all of them.
     coupled: Option<CoupledPorts>,
 }
 

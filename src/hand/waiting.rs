@@ -47,8 +47,9 @@ impl Waiting {
     /// Returns whether the condition holds for every finger.
     ///
     /// # Errors
-    /// Returns an error if a finger is faulted, or if the time limit is over. Returns an error if a finger is limp or
-    /// is being calibrated, or if the hand is being closed, because the finger then follows no set point.
+    /// Returns an error if a finger is faulted, or if the condition does not hold when the time limit is over. Returns
+    /// an error if a finger is limp or is being calibrated, or if the hand is being closed, because the finger then
+    /// follows no set point.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let late = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
         let (mut waiting_for, mut refusal) = (None, None);

@@ -12,7 +12,7 @@ pub struct LinkMomentum {
     pub(super) by_1: f64,
     /// Half the derivative of `inertia.m11` with respect to theta_2.
     pub(super) by_2: f64,
-    /// Derivative of the coupled inertia of joints 1 and 2 with respect to theta_2, with the opposite sign.
+    /// Derivative of `inertia.m23`, which couples joints 1 and 2, with respect to theta_2, with the opposite sign.
     pub(super) bend: f64,
 }
 
@@ -43,7 +43,8 @@ mod tests {
     use crate::model::configuration::ConfiguredFinger;
     use nalgebra::Vector3;
 
-    /// The change of the momentum along a motion equals the joint torques H theta_dd + c plus the energy gradient.
+    /// Along a motion, the derivative of the momentum equals the joint torques H theta_dd + c plus the energy gradient.
+    /// Here, c is the vector of the Coriolis and centrifugal torques.
     #[test]
     fn momentum_changes_by_the_torques_and_the_energy_gradient() {
         let finger = ConfiguredFinger::default();

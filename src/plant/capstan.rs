@@ -30,7 +30,8 @@ pub(super) struct Capstans {
     pulleys: f64,
 }
 
-/// The points of contact, m from the position of the joint end at theta = 0, positive toward the motor.
+/// The positions of the two points of contact, m, positive toward the motor. The origin is the position of the joint's
+/// end of the tendon at theta = 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Contacts {
     conduit: f64,

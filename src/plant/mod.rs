@@ -1,6 +1,6 @@
 //! The physics of a finger and its sensors, which the simulated board uses. The computation is in SI units, and the
-//! numbers of the configuration are converted once, at construction. Exception: the link lengths, the tip position and
-//! a fixed surface stay in cm, as in the configuration.
+//! numbers of the configuration are converted once, at construction. Exception: the link lengths and a fixed surface
+//! stay in cm, as in the configuration. So the position of the tip is in cm, and its velocity in cm/s.
 
 mod amplifier;
 mod capstan;

@@ -69,7 +69,8 @@ impl Motors {
             let friction = friction * self.stribeck.factor(speeds[motor]);
             // Friction can reduce the speed to zero, but cannot reverse it. A rotor at rest stays at rest until the
             // torque exceeds the friction.
-            // The friction is NaN if the simulation has diverged, and f64::clamp would panic then.
+            // If the simulation has diverged, the friction is NaN, and f64::clamp would panic with a NaN bound. So
+            // f64::max replaces the NaN by 0.
             let loss = (h / self.inertia[motor] * friction).max(0.0);
             speed - speed.clamp(-loss, loss)
         })

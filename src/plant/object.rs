@@ -13,7 +13,7 @@ const DAMPING_RATIO: f64 = 0.3;
 /// Mass of a fingertip from which the damping of its contact is computed, kg.
 const TIP_MASS: f64 = 0.02;
 
-/// Lever of the rolling resistance of a ball on the table, m. The resistance brings a ball that nobody touches to rest.
+/// Lever of the rolling resistance of a ball on the table, m. The resistance stops a ball that no finger touches.
 const ROLLING_LEVER: f64 = 2e-4;
 
 /// The tip of a finger in the palm's frame.

@@ -1,5 +1,4 @@
-//! The four tendons: one-sided springs between the pulleys of the motors and the joints, which may rub, harden and
-//! creep.
+//! The four tendons: one-sided springs between the motor pulleys and the joints. The tendons may rub, harden and creep.
 
 use super::capstan::{Capstans, Contacts, SectionTensions};
 use super::elasticity::Elasticity;

@@ -117,8 +117,8 @@ mod tests {
     #[test]
     fn a_late_command_hardly_moves_a_period() {
         let (mean, off) = run(0.0, 20, 0.0, |cycle| Some(if cycle % 1000 == 500 { 1_000_000 } else { 20_000 }));
-        // The loop has settled, and one command per second is 1 ms late. This raises the mean lateness by 1 us, so
-        // a loop that followed the mean would also move the beginnings by 1 us.
+        // The loop has settled, and one command per second is 1 ms late. This raises the mean lateness by 1 us, so even
+        // a loop that followed only the mean would move the beginnings by 1 us.
         assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{mean} {off}");
     }
 

@@ -3,8 +3,8 @@
 //! thread waits for the first time. If the process is out of memory, this allocation would end it while a hand may be
 //! in motion.
 //!
-//! A lock stays usable after a panic of the thread that held it. The C interface catches panics, and a hand must be
-//! closed after them too.
+//! A lock stays usable after a panic of the thread that held it. The C interface catches panics, and it must be
+//! possible to close a hand after a panic.
 
 use super::clock::now;
 use std::sync::{self, MutexGuard, PoisonError, RwLockReadGuard, RwLockWriteGuard, TryLockError};
@@ -70,8 +70,8 @@ impl<T> RwLock<T> {
     }
 }
 
-/// Calls `attempt` until it has a result, for at most `limit`. This is for the end of a process, where a lock may be
-/// held by a thread that never releases it.
+/// Calls `attempt` until it has a result, for at most `limit`. This is for the end of a process, when a thread may hold
+/// a lock and never release it.
 pub fn try_for<T>(limit: Duration, attempt: impl Fn() -> Option<T>) -> Option<T> {
     let end = now() + limit.as_nanos() as u64;
     loop {

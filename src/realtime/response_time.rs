@@ -86,7 +86,8 @@ fn within(thread: &PeriodicThread, time: u64) -> Option<u64> {
     (time <= thread.period).then_some(time)
 }
 
-/// `alone` plus the computing time of the other threads within `window`. `None` if the sum exceeds the period.
+/// Returns `alone` plus the computing time, within `window`, of the threads that may delay thread `own`. Returns `None`
+/// if the sum exceeds the period of thread `own`, or if one of those threads has no bound.
 fn finish(threads: &[PeriodicThread], done: &[Option<u64>], own: usize, alone: u64, window: u64) -> Option<u64> {
     let thread = &threads[own];
     let mut time = alone;

@@ -154,7 +154,8 @@ fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u
         Ok(Message { frame: Frame::Stop(_), .. }) => finger.stop(now),
         Ok(Message { frame: Frame::TactileRequest(request), .. }) => match finger.touched(&request) {
             Some(event) => Frame::TactileEvent(event),
-            // A finger without tactile elements does not announce the capability.
+            // A finger without tactile elements does not announce the capability for this request. For such a finger,
+            // the request is a frame of an unknown type.
             None => refuse(Reason::UnknownFrame, packet.body().len() as u16),
         },
         // Answers were rejected above.

@@ -108,7 +108,7 @@ impl CoupledPorts {
         Ok(Self { shared, object, ended, thread: Some(thread), process: std::process::id() })
     }
 
-    /// Returns the path of a finger's port. `None`: the finger has none.
+    /// Returns the path of a finger's port, or `None` if the finger has no port.
     pub fn path(&self, finger: FingerNumber) -> Option<PathBuf> {
         self.shared.lock().terminals[finger.index()].as_ref().map(|terminal| terminal.path().to_owned())
     }

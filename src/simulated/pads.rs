@@ -133,7 +133,7 @@ impl Pads {
         }
     }
 
-    /// Appends an event to the queue. A full queue drops the newest event.
+    /// Appends an event to the queue. If the queue is full, this event is lost.
     fn note(&mut self, now: u64, element: usize, change: TactileChange, force: f64) {
         if self.queue.len() == QUEUE {
             self.lost = self.lost.wrapping_add(1);

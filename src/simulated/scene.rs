@@ -29,12 +29,12 @@ pub struct ObjectState {
     pub forces: [[f64; 3]; FINGERS],
 }
 
-/// An object with the places of the fingers around it.
+/// An object, and the poses of the fingers' frames in the palm's frame.
 #[derive(Clone, Debug)]
 pub struct Scene {
     object: FreeObject,
     to_palm: [Isometry3<f64>; FINGERS],
-    /// Duration of all steps, s.
+    /// Simulated time, s: the sum of all steps so far.
     time: f64,
 }
 

@@ -74,7 +74,7 @@ pub struct OneCycleMap {
     pub(super) steps: usize,
     /// Length of a plant step, s.
     pub(super) step: f64,
-    /// Of every `loss_interval` cycles, the last one loses its reply. If it is 0, no reply is lost.
+    /// Of every `loss_interval` cycles, the last one loses its reply. With a `loss_interval` of 0, no reply is lost.
     loss_interval: usize,
 }
 

@@ -14,7 +14,7 @@ pub struct Variant {
     pub name: &'static str,
     /// Changes the plant. The second argument is the period of the servo, ms.
     change: fn(&mut ConfiguredSimulation, f64),
-    /// One reply is lost in this number of cycles: the reply of the last of them. With 0, no reply is lost.
+    /// Of every `loss_interval` cycles, the last one loses its reply. With a `loss_interval` of 0, no reply is lost.
     pub(super) loss_interval: usize,
 }
 

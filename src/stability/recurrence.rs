@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// A sample is only rounding error if it is at most this fraction of the largest sample.
+/// A sample counts as mere rounding error if it is at most this fraction of the largest sample.
 const ROUNDING: f64 = 1e-6;
 /// Number of samples to which a recurrence is fitted.
 const WINDOW: usize = 80;
@@ -27,7 +27,7 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
 }
 
 /// Returns [`growth`] for a system with directions in which nothing holds it. Displacements in these directions remain,
-/// or change so slowly that their eigenvalues are nearer to 1 than `drift`. They are ignored.
+/// or change so slowly that their eigenvalues differ from 1 by less than `drift`. They are ignored.
 ///
 /// The function evaluates the changes from one sample to the next. They contain no constant displacement, which would
 /// hide the other modes.
@@ -36,13 +36,13 @@ pub(super) fn growth_besides_drift(samples: &[DVector<f64>], drift: f64) -> f64 
     slowest(&changes, drift)
 }
 
-/// Returns [`growth`] without the modes whose eigenvalues are nearer to 1 than `drift`.
+/// Returns [`growth`] without the modes whose eigenvalues differ from 1 by less than `drift`.
 fn slowest(samples: &[DVector<f64>], drift: f64) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
     }
     let largest = samples.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
-    // The window ends before the first sample that is only rounding error. All later samples are unusable too.
+    // The window ends before the first sample that is mere rounding error. All later samples are unusable too.
     let end = samples.iter().position(|sample| sample.norm() <= ROUNDING * largest).unwrap_or(samples.len());
     let window = &samples[end.saturating_sub(WINDOW)..end];
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
@@ -93,7 +93,7 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
 }
 
 /// Returns the largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample and
-/// are not nearer to 1 than `drift`.
+/// differ from 1 by at least `drift`.
 ///
 /// The slowest mode contributes most to the last sample. A larger root without a contribution fits rounding errors, and
 /// does not belong to the motion.

@@ -53,8 +53,8 @@ impl Sample {
         self.rest.joints
     }
 
-    /// Returns the sample as a hard finger with this isotropic stiffness, N/cm. The caller passes more than any pose
-    /// supports, to find the part of it that this pose admits.
+    /// Returns the sample as a hard finger with this isotropic stiffness, N/cm. The caller passes a stiffness that no
+    /// pose supports. The servo scales it down, and this scale gives the stiffness that the sample's pose supports.
     pub fn with_isotropic(&self, stiffness: f64) -> Rest {
         Rest { stiffness: spatial(&(Matrix3::identity() * stiffness)), damping: 1.0, wall: None, ..self.rest }
     }
@@ -109,8 +109,8 @@ pub(super) fn samples(finger: &ConfiguredFinger, number: usize, seed: u64, walls
             let (contact, most_tilt) = match number / 2 % 4 {
                 // The spring of a frictionless point acts only along its normal. Without a wall such a point is not
                 // sampled: under a constant force, nothing would keep the tip from moving away perpendicular to the
-                // normal. Its wall is not tilted, because a tilted wall would add stiffness in that direction, which
-                // the spring does not have.
+                // normal. The wall of such a point is not tilted: a tilted wall would add stiffness perpendicular to
+                // the normal, where the spring has none.
                 0 if walls => (ContactType::FrictionlessPoint(Unit::new_normalize(tip_way).into_inner()), 0.0),
                 1 => (ContactType::SoftFinger(normal, uniform(&mut random, 0.0, 1.0)), LARGEST_TILT),
                 _ => (ContactType::HardFinger, LARGEST_TILT),

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 /// Step of the bound, N/cm. Every bound is a multiple of this step.
 const GRID: f64 = 0.1;
 
-/// Smallest fraction of the bound that every pose must support.
+/// Every pose must support at least this fraction of the bound.
 const LEAST_SCALE: f64 = 0.5;
 
 /// Distance of the tip from the axis of joint 0 below which a pose is counted separately, cm. Such a pose is near the
@@ -42,7 +42,8 @@ pub struct StiffnessBound {
     pub least_scale: f64,
     /// Number of samples tried at the bound. All but those in `uncovered` are stable.
     pub samples: usize,
-    /// The samples that are unstable at 1 N/cm too. A lower bound would not help them, so they do not limit the bound.
+    /// The samples that are unstable even at 1 N/cm. Lowering the bound that far does not make them stable, so they do
+    /// not limit it.
     pub uncovered: Vec<Rest>,
 }
 
@@ -61,8 +62,8 @@ pub struct NearAxis {
 /// The reason for a bound.
 #[derive(Clone, Debug)]
 pub enum Limit {
-    /// With a larger bound the finger is unstable in this sample. Its stiffness is the one that it has
-    /// at the next larger bound.
+    /// With a larger bound the finger is unstable in this sample. The stiffness given here is that of the sample at the
+    /// next larger bound.
     Unstable(Box<Rest>),
     /// With a larger bound this pose (joint angles, rad) supports less than half of that bound.
     Scaled(Vector3<f64>),
@@ -140,15 +141,15 @@ impl Search {
 struct Lowered {
     /// The bound, in units of [`GRID`].
     bound: f64,
-    /// A sample that prevents a larger bound, if one does.
+    /// A sample that prevents a larger bound, if there is one.
     limit: Option<Rest>,
     /// The samples that are unstable at the smallest bound too.
     uncovered: Vec<Rest>,
 }
 
 /// Returns a bound up to `most` at which the covered samples are stable. If every sample that is stable at a bound is
-/// also stable at all lower bounds, the result is the largest such bound. The covered samples are those that are stable
-/// at the smallest bound.
+/// also stable at all lower bounds, the result is the largest such bound. The covered samples are all except those that
+/// are unstable at a tried bound and also at the smallest bound.
 fn lower_until_stable(trial: &Trial, samples: &[Sample], most: f64) -> Lowered {
     let least = (SOFTEST / GRID).min(most);
     let mut covered: Vec<&Sample> = samples.iter().collect();

@@ -8,9 +8,10 @@ use crate::control::AdmissibleDamping;
 use crate::model::Links;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 
-/// Time in which every motion must decay to 1/e, s. At 1000 Hz the largest modulus is then below 1 - 1e-4. Most slow
-/// motions of the default finger take 1.2 s with state feedback. The slowest takes 5 s, with the controller of
-/// Figure 11 of COINS TR 90-48 and an almost straight finger. So this margin excludes no motion that is merely slow.
+/// Time in which every motion must decay to 1/e, s. At 1000 Hz every eigenvalue of the one-cycle map then has a modulus
+/// below about 1 - 1e-4. Most slow motions of the default finger take 1.2 s with state feedback. The slowest takes 5 s,
+/// with the controller of Figure 11 of COINS TR 90-48 and an almost straight finger. So this margin excludes no motion
+/// that is merely slow.
 const DECAY_TIME: f64 = 10.0;
 
 /// A stiffness that no pose supports, N/cm. The servo scales it down to the supported stiffness.
@@ -42,7 +43,8 @@ impl Trial {
         in_parallel(samples, |sample| UNSUPPORTED * self.map.scale(&sample.with_isotropic(UNSUPPORTED)))
     }
 
-    /// Returns the finger of a sample at rest, with a spring whose largest eigenvalue is at most `stiffest`, N/cm.
+    /// Returns the finger at rest in the pose of a sample. The largest eigenvalue of its spring is at most `stiffest`,
+    /// N/cm.
     pub fn rest(&self, sample: &Sample, stiffest: f64) -> Rest {
         sample.at(stiffest, &self.links, |stiffness| self.admissible.range(stiffness))
     }

@@ -61,7 +61,7 @@ pub enum AttachError {
         /// What is wrong with the answer.
         reason: String,
     },
-    /// The table of the system that lists the open hands cannot be read.
+    /// The system's table of sockets, in which the open hands are found, cannot be read.
     #[error(
         "cannot read the names of the open hands: {0}. Mount /proc, and permit this process to read /proc/net/unix"
     )]

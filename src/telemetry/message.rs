@@ -42,7 +42,7 @@ pub enum Message {
     },
     /// An event, as planners get it.
     Event(Event),
-    /// The object of a simulated hand, once in each batch.
+    /// The object of a simulated hand, once in each batch of messages that the hand publishes.
     Object(ObjectState),
     /// The status of a finger, once a second, and at once for a new reader.
     Status(Box<Status>),

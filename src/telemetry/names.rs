@@ -8,7 +8,7 @@ use std::io;
 /// The table of all Unix sockets. Abstract names begin with @ there.
 const SOCKETS: &str = "/proc/net/unix";
 
-/// The flags of a socket that listens, in that table.
+/// The flags of a listening socket in the table [`SOCKETS`].
 const LISTENS: &str = "00010000";
 
 /// Largest number of hands of one user with the same name.
@@ -65,7 +65,7 @@ fn listed(table: &str, prefix: &str) -> BTreeSet<String> {
 fn is_open(name: &str) -> bool {
     match Socket::connect(&socket_name(name)) {
         Ok(socket) => socket.peer().is_ok_and(|peer| peer.user == own_user() && is_alive(peer.process)),
-        // The hand has not accepted the earlier connections yet.
+        // The queue of connections is full, because the hand has not accepted the earlier ones yet.
         Err(error) => error.kind() == io::ErrorKind::WouldBlock,
     }
 }

@@ -9,7 +9,8 @@ use std::os::fd::RawFd;
 pub(super) struct Process(Descriptor);
 
 impl Process {
-    /// Opens a process. Returns none if this process cannot see it, or if the system has no descriptors of processes.
+    /// Opens the process with this number. Returns `None` if the calling process cannot see that process, or if the
+    /// system does not support process descriptors.
     pub fn open(number: i32) -> Option<Self> {
         if number <= 0 {
             return None;

@@ -163,7 +163,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Takes the messages that announce batches. Returns whether the hand has been closed or its process has ended.
+    /// Discards the bytes with which the hand has announced new blocks. Returns whether the hand has been closed or its
+    /// process has ended.
     fn has_ended(&self) -> bool {
         let mut bytes = [0; 16];
         loop {
@@ -213,7 +214,7 @@ fn answer(
     let received = loop {
         match socket.receive(&mut bytes) {
             Ok(received) => break received,
-            // The hand has closed the connection without reading the request. What it has sent before comes next.
+            // The hand has closed the connection without reading the request. What it sent before is received next.
             Err(error) if error.kind() == ErrorKind::ConnectionReset && !reset => reset = true,
             Err(error) if error.kind() != ErrorKind::WouldBlock => return Err(AttachError::Closed(name())),
             Err(_) if process.is_some_and(Process::has_ended) => return Err(AttachError::Closed(name())),

@@ -104,7 +104,7 @@ impl Readers {
 
 impl Drop for Readers {
     fn drop(&mut self) {
-        // A forked child may have copies of the sockets. Without this call the readers would not see the end.
+        // A forked child may have copies of the sockets, so that dropping the sockets would not end the connections.
         let candidates = self.candidates.iter().map(|candidate| &candidate.socket);
         self.attached.iter().chain(candidates).for_each(Socket::shut_down);
         self.listener.shut_down();

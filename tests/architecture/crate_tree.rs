@@ -94,7 +94,7 @@ pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
 }
 
 /// Converts a path, as it is written in the file of `module`, to a path from the crate's root. A path that begins with
-/// neither `crate`, `super` nor `self` may name a module below `module`, so it is taken for such a path.
+/// neither `crate`, `super` nor `self` may name a module below `module`, so it is resolved from `module`.
 pub fn from_root(path: &[String], module: &[String]) -> Vec<String> {
     let mut at = module.to_vec();
     for (place, name) in path.iter().enumerate() {

@@ -55,8 +55,8 @@ struct Reader<'a> {
 impl<'a> Visit<'a> for Reader<'_> {
     fn visit_item_use(&mut self, import: &'a ItemUse) {
         if matches!(import.vis, Visibility::Inherited) {
-            // A `use` of a module counts as an import of the module's file. A path that begins with this module may add
-            // an import of another file, from which the module re-exports the name.
+            // A `use` of a module counts as an import of the module's file. A path such as `module::Name` counts as an
+            // import of the file that defines `Name`. That is another file if the module only re-exports `Name`.
             self.found.extend(paths(&import.tree, self.module).into_iter().map(|(_, path)| path));
         }
     }

@@ -52,7 +52,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// The benchmarks expect this name.
 type Failure = Box<dyn Error>;
 
-/// Waits for the turn of a test with servo threads. The servos without a rate limit would disturb the other tests.
+/// Waits for the turn of a test with servo threads. The servos of `throughput` have no rate limit, and would disturb
+/// the other tests.
 fn turn() -> MutexGuard<'static, ()> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
@@ -124,7 +125,7 @@ fn only_the_permitted_cores_are_watched() {
     let last = *cores::permitted().expect("known").last().expect("this thread runs on a core");
     // The thread ends with this test, so no other test gets its affinity.
     let narrowed = std::thread::spawn(move || {
-        // SAFETY: a cpu_set_t is plain bits, and all zeros is the empty set. `last` is within it.
+        // SAFETY: a cpu_set_t is plain bits, and all zeros is the empty set. `last` is less than CPU_SETSIZE.
         let refused = unsafe {
             let mut only: libc::cpu_set_t = std::mem::zeroed();
             libc::CPU_SET(last, &mut only);

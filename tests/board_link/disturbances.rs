@@ -52,7 +52,8 @@ fn a_late_refusal_of_a_handshake_frame_is_no_fault() {
     }
 }
 
-/// A servo stops one finger and relays a request to another one. The answer to its own Stop comes first.
+/// The link relays a Stop to finger 2. Four frames that answer other requests, such as a Stop to finger 1, arrive
+/// before the answer to the relayed Stop.
 #[test]
 fn only_the_answer_to_a_relayed_request_is_passed_on() {
     let wire = |address, sequence, frame| WireFrame::new(&Message { address, sequence, frame }).as_bytes().to_vec();

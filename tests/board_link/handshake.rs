@@ -156,7 +156,7 @@ fn handshake_waits_for_a_board_that_is_starting() {
 }
 
 #[test]
-fn handshake_waits_for_the_watchdog_to_end_a_dead_host() {
+fn handshake_waits_until_the_watchdog_of_a_dead_host_has_tripped() {
     let mut link = link(&[1]);
     link.shake_hands(1, &terms(EndState::Release), 500 * MS).unwrap();
     cycle(&mut link, 0, pull(3000));

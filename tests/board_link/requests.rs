@@ -92,10 +92,10 @@ fn a_board_refuses_what_it_does_not_understand() {
             other => panic!("{other:?}"),
         }
     };
-    // The board refuses versions 2 to 9, an unassigned type, a Stop with a body, and a third end state.
+    // The board refuses versions 2 to 9, an unassigned type, a Hello to address 0 without the highest version, a Stop
+    // with a body, and a third end state.
     assert_eq!(refusal(&[0x11, 77, 2, 9]), Refused { request: 1, reason: Reason::Version, detail: 0x0101 });
     assert_eq!(refusal(&[0x71, 77, 1, 2, 3]), Refused { request: 7, reason: Reason::UnknownFrame, detail: 3 });
-    // It also refuses a Hello to address 0 without the second version.
     assert_eq!(refusal(&[0x10, 77, 1]), Refused { request: 1, reason: Reason::UnknownFrame, detail: 1 });
     assert_eq!(refusal(&[0x41, 77, 0]), Refused { request: 4, reason: Reason::UnknownFrame, detail: 1 });
     let mut configure = vec![0x21, 77, 1, 20, 0, 2];

@@ -55,7 +55,7 @@ fn orderly_use() -> Vec<Conversation> {
             ],
         ),
         (
-            "torques are clipped, and only what is obeyed",
+            "torques are clipped only in a command that the board obeys",
             vec![
                 configured(TERMS),
                 command([10_001, -10_001, i16::MAX, i16::MIN], ENABLED | Status::TORQUE_CLIPPED),
@@ -169,7 +169,7 @@ fn refusals() -> Vec<Conversation> {
     (version_2[2], watchdog_0[3]) = (2, 0);
     vec![
         (
-            "terms that cannot be kept leave those before",
+            "refused terms leave the earlier terms in force",
             vec![
                 configure(Configure { version: 2, ..TERMS }, refused(2, 2)),
                 sent(COMMAND_FRAME, refused(3, 0)),

@@ -1,11 +1,12 @@
-//! Frames that a board must ignore: damaged ones, and good ones that are not addressed to it.
+//! Frames that a board must ignore: damaged ones, and good ones that are not requests to its finger.
 
 use super::frames::{all_found, sealed, with_check};
 use super::json::{hex, object, text};
 use super::stuffing::stuffed;
 use sun2xp::board::protocol::*;
 
-/// A Command to finger 1 and the ways to damage it.
+/// Damaged frames, most of them made from a Command to finger 1. Each has a name, the reason why the receiver drops it,
+/// and its bytes on the wire.
 fn damaged() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let content = [0x31, 7, 3, 0xA4, 4, 0x52, 2, 0, 0, 0xFF, 0xFF];
     let good = sealed(&content);
@@ -56,7 +57,7 @@ pub fn bad() -> Vec<String> {
     damaged().into_iter().map(line).collect()
 }
 
-/// Frames that a board with finger 1 only must ignore.
+/// Frames, and delimiters without a frame, that a board whose only finger is 1 must ignore.
 fn not_for_finger_1() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("a Stop for finger 2", sealed(&[0x42, 1])),

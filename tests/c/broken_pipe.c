@@ -38,23 +38,23 @@ int main(void)
     close(ends[1]);
     signal(SIGPIPE, SIG_DFL);
 
-    /* Without a hand, the first refusal of its kind prints a message. */
+    /* The first refusal of each kind prints a message, even if no hand is open. */
     CHECK(SendPos(1, Pos) == -1 && errno == ENODEV);
     CHECK(strstr(HandError(), "no hand is open") != NULL);
     CHECK(!is_pending() && !is_blocked());
 
-    /* Opening the simulated hand prints a message. */
+    /* The configuration names no port, so OpenHand prints a message. */
     CHECK(OpenHand() == 0);
     CHECK(!is_pending() && !is_blocked());
 
-    /* The planner blocks SIGPIPE, and none is pending: none may be pending afterwards. */
+    /* The planner blocks SIGPIPE, and no SIGPIPE is pending. After the call, no SIGPIPE may be pending. */
     sigemptyset(&pipe_only);
     sigaddset(&pipe_only, SIGPIPE);
     CHECK(sigprocmask(SIG_BLOCK, &pipe_only, NULL) == 0);
     CHECK(SendPos(1, Beyond) == -1 && errno == ERANGE);
     CHECK(!is_pending() && is_blocked());
 
-    /* One is pending: it must stay pending. */
+    /* A SIGPIPE is pending. It must stay pending. */
     raise(SIGPIPE);
     CHECK(SendPos(4, Pos) == -1 && errno == EINVAL);
     CHECK(is_pending() && is_blocked());

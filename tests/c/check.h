@@ -17,7 +17,7 @@
         } \
     } while (0)
 
-/* The hand of the five calls of 1990, for the calls of sun2xp.h. */
+/* The handle of the hand that OpenHand has opened. The calls of sun2xp.h take it. */
 #define HAND sun2xp_default_hand()
 
 #define PAUSE_MS(Milliseconds) \

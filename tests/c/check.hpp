@@ -1,10 +1,10 @@
-// check.hpp - the check of the programs in C++.
+// check.hpp - the macro CHECK for the test programs in C++.
 #ifndef CHECK_HPP
 #define CHECK_HPP
 #include <cstdio>
 #include <cstdlib>
 
-/* Ends the program with the source line if a condition does not hold. */
+/* If a condition does not hold, prints it with its file and line, and ends the program. */
 #define CHECK(Condition) \
     do { \
         if (!(Condition)) { \

@@ -1,5 +1,5 @@
-/* Without a hand every call is refused with ENODEV, except that a null pointer is reported first. CloseHand has
-   nothing to do. The hand can be opened and closed repeatedly. */
+/* Without a hand, the calls for a finger are refused with ENODEV, or with EFAULT if a pointer is null. CloseHand has
+   nothing to do, and succeeds. The hand can be opened and closed repeatedly. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

@@ -157,8 +157,8 @@ static void close_inside(const struct sun2xp_event *Event, void *Context)
     closed = 1;
 }
 
-/* Waits until main is in CloseHand, which waits for this callback. OpenHand is refused in any case: until then, because
-   the hand is open. */
+/* Calls OpenHand until main is in CloseHand, which waits for this callback. Every call is refused with EBUSY: at first
+   because the hand is open, and then because main closes it. */
 static void open_inside(const struct sun2xp_event *Event, void *Context)
 {
     int tries;

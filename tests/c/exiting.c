@@ -20,7 +20,7 @@
         } \
     } while (0)
 
-/* Every call that would move or open a hand. */
+/* Calls that would move or open a hand are refused. The stop call still works. */
 static void commands_are_refused(void)
 {
     static const double Kx[9] = {3, 0, 0, 0, 3, 0, 0, 0, 3}, Three[3] = {0.1, 0.5, 0.9};

@@ -1,6 +1,6 @@
 /* In a forked child every call that opens, closes, reads or commands a hand is refused, except sun2xp_stop_all, which
-   does nothing. Many arguments are wrong, because the refusal of a forked child comes before all others. The child ends
-   without touching the hand. The parent's hand keeps running. */
+   does nothing. Many arguments are wrong on purpose: the refusal of a forked child must come before all others. The
+   child ends without touching the hand. The parent's hand keeps running. */
 #include <errno.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -20,7 +20,7 @@
 static sun2xp_hand *Opened;
 static double Pos[3] = {0.0, 0.5, 0.9};
 
-/* Checks that the last refusal is that of `call`, and that it has the errno and the number of a forked child. */
+/* Checks that the last refusal is that of `call`, and that it has errno EPERM and the number SUN2XP_ERROR_FORKED. */
 static void check_refused(const char *call, int result)
 {
     int number = errno;

@@ -37,7 +37,7 @@ int main(void)
     CHECK(setrlimit(RLIMIT_FSIZE, &limit) == 0);
     CHECK(dup2(file, 2) == 2);
 
-    /* Without a hand, the first refusal of its kind prints a message. Opening the simulated hand prints another. */
+    /* The refusal of SendPos prints a message, and so does OpenHand, because the configuration names no port. */
     CHECK(SendPos(1, Pos) == -1 && errno == ENODEV);
     CHECK(OpenHand() == 0);
     CHECK(!is_pending());

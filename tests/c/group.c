@@ -32,7 +32,7 @@ int main(void)
     int tries;
 
     CHECK(OpenHand() == 0);
-    /* The commands of a later version are larger. */
+    /* The commands have the size that they would have with a later version of the header. */
     One->size = Two->size = Three->size = sizeof Larger[0];
     One->finger = 3;
     One->position = Pos;

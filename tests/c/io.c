@@ -146,7 +146,7 @@ static void count_notices(int severity, const char *text, void *user)
         ++*(int *)user;
 }
 
-/* Hardware that starts without a zero is opened with a message, and recovers with another one. */
+/* Opening hardware that starts without a zero succeeds with a warning. Recovering it succeeds with another warning. */
 static void starts_without_zero(const struct sun2xp_io *io)
 {
     static const char Text[] = "[hand]\nfingers = [1]\nwatchdog_ms = 200\nend_state = \"release\"\n";

@@ -1,5 +1,6 @@
 /* A library with the function call(), which holds a lock while it calls work(). If this file is compiled with
-   -fexceptions, call() also releases the lock when work() unwinds the stack. Its frame then has a landing pad. */
+   -fexceptions, call() also releases the lock when work() unwinds the stack. The frame of call() then has a landing
+   pad. */
 void work(void);
 void call(void);
 

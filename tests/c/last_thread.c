@@ -1,6 +1,6 @@
 /* The planner's last thread ends with the hand open. The process must end as it would without the library: with the
-   status 0, after its exit handlers, one of which closes the hand. With "main" the last thread is main itself; with
-   "other" it is another thread, three seconds later. */
+   status 0, after its exit handlers, one of which closes the hand. With the argument "main", the last thread is that of
+   main. With "other", it is another thread, which ends three seconds after that of main. */
 #include <pthread.h>
 #include <string.h>
 #include "Sun2Xp.h"

@@ -16,10 +16,10 @@
 #include "check.h"
 #include "refused.h"
 
-/* A port that the system does not open yet. */
+/* A port that is not ready: opening it fails with EAGAIN. */
 #define PORT "/dev/sun2xp-not-ready"
 
-/* Numbers of the thread and of the pseudo-terminal that is refused, counted from 1; 0 refuses none. */
+/* Which thread and which pseudo-terminal is refused, counted from 1 (0 refuses none), and how many were requested. */
 static int refused_thread, refused_terminal, threads, terminals;
 /* The errno of the refused pseudo-terminal. */
 static int terminal_error;

@@ -6,7 +6,8 @@
 static const char *(*why)(void);
 #define HandError why
 
-/* Copies with memcpy, because ISO C has no conversion from an object pointer to a function pointer. */
+/* Copies the address of a function with memcpy, because ISO C has no conversion from an object pointer to a function
+   pointer. */
 static void find(void *library, const char *name, void *function)
 {
     void *symbol = dlsym(library, name);

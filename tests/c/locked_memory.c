@@ -43,7 +43,7 @@ static void *open_and_close(void *unused)
     if (locked() > most)
         most = locked();
     if (unlocks) {
-        /* memory_locked reports what OpenHand has done. */
+        /* memory_locked says that OpenHand has locked memory, even if the planner has unlocked it since. */
         CHECK(munlockall() == 0 && locked() == 0);
         CHECK(sun2xp_status(HAND, 1, &Status) == 0 && Status.memory_locked == 1);
     }

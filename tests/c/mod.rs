@@ -23,7 +23,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempDir;
 
-/// Flags that every C program must pass without a warning.
+/// Compiler flags for programs that must compile without a warning.
 pub const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
 
 /// The dialects of C that planners use.

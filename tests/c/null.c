@@ -7,7 +7,7 @@
 #include "sun2xp.h"
 #include "check.h"
 
-/* CHECK would turn the expanded call into a string that is longer than C89 guarantees. */
+/* CHECK would turn the expanded call into a string that is longer than a C89 compiler must accept. */
 #define REFUSED(Call, Text) \
     do { \
         errno = 0; \

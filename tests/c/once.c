@@ -1,4 +1,5 @@
-/* Each argument of a call is evaluated once. Compound literals work, and so does an if without braces. C99. */
+/* Each argument of a call is evaluated once. A compound literal can be an argument, and a call can be the body of an if
+   without braces. The program needs C99 or a later standard. */
 #include <stddef.h>
 #include "Sun2Xp.h"
 #include "check.h"

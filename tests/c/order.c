@@ -1,6 +1,6 @@
 /* Makes calls with several errors at once. Each call has one error fewer than the previous call of the same function.
-   Prints a line for each call: its name and the errno of its refusal. Finger 1 is on a real port, the others are
-   simulated. */
+   Prints a line for each refused call: its name and the errno of its refusal. Finger 1 is at the port of
+   `sun2xp board`. The library itself simulates the other fingers. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

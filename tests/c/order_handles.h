@@ -1,4 +1,4 @@
-/* The part of order.c with null pointers, and with calls without a hand. */
+/* Part of order.c: calls with null pointers, and calls without a hand. */
 
 static void null_pointers(void)
 {

@@ -1,4 +1,5 @@
-/* The part of order.c with the refusals of paths, and the arguments of order_reflexes.h. */
+/* The part of order.c with the refusals of paths. It also defines the arguments that order.c and its other parts pass
+   to the calls for touch and reflexes. */
 
 static struct sun2xp_path_pose Path[2];
 static struct sun2xp_touch Touch;

@@ -1,4 +1,4 @@
-/* order_reflexes.h - the refusals of touch and reflexes, for order.c. */
+/* order_reflexes.h - the part of order.c for touch and reflexes. */
 
 static void wrong_reflexes(void)
 {

@@ -17,7 +17,7 @@ static const char *name_of(int number)
     }
 }
 
-/* Checks that the call is refused for the reason that has this word in its text. */
+/* Checks that the call is refused, and that the error text contains this word. Prints the call and the errno. */
 #define REFUSED(Call, Result, Word) \
     do { \
         CHECK((Result) < 0); \

@@ -1,5 +1,5 @@
-/* A planner that declares the calls itself and takes their addresses. It declares the type of its arrays with
-   SUN2XP_REAL. */
+/* A planner that declares the calls itself and takes their addresses. REAL is the type of its arrays. The compiler
+   options define REAL, and either set SUN2XP_REAL to the same type or leave the header out with SUN2XP_H. */
 #include "Sun2Xp.h"
 #include "check.h"
 

@@ -40,7 +40,7 @@ int main(void)
     int tries;
 
     CHECK(OpenHand() == 0);
-    /* The poses of a later version are larger. */
+    /* A planner for a later version of the library may send larger poses. */
     First->size = Second->size = sizeof Larger[0];
     CHECK(GetPos(1, Before) == 0);
     First->time = 0.02;

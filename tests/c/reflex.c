@@ -37,7 +37,9 @@ static void refused(void)
     wrong = good, wrong.condition = SUN2XP_WHEN_EVENT;
     refuse(wrong, EINVAL, "EVENT_");
     wrong = rule(SUN2XP_WHEN_JOINT_ABOVE, 1, SUN2XP_THEN_HOLD), wrong.joint = 3;
-    refuse(wrong, EINVAL, "joint");
+    refuse(wrong, EINVAL, "joint 3");
+    wrong.joint = -1;
+    refuse(wrong, EINVAL, "joint -1");
     wrong = good, wrong.bound = -1;
     refuse(wrong, ERANGE, "force");
     wrong = rule(SUN2XP_WHEN_LINK_LOST, 1e9, SUN2XP_THEN_HOLD);

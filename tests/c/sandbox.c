@@ -17,7 +17,7 @@
 #include "refused.h"
 
 #define NOT_PERMITTED 77
-/* Some processors have no system call of the older name. */
+/* Some processors have only epoll_pwait, and not the older epoll_wait. */
 #ifndef SYS_epoll_wait
 #define SYS_epoll_wait SYS_epoll_pwait
 #endif
@@ -31,7 +31,7 @@ struct refusal {
     const char *cannot;
     /* The refused system calls. */
     long calls[2];
-    /* 1: the fingers have ports that are named by their paths. */
+    /* 1: the configuration names a port for each finger. 0: the fingers are simulated. */
     int real_port;
 };
 

@@ -45,7 +45,7 @@ static int zero_finger(void) { return sun2xp_zero(HAND, 1); }
 static int identify_refused(void) { return sun2xp_identify(HAND, 7) + SUN2XP_ERROR_ARGUMENT; }
 static int recover_hand(void) { sun2xp_stop_all(); PAUSE_MS(50); return sun2xp_recover(HAND, 1); }
 
-/* Defines a function that makes a call, which fills a struct. */
+/* Defines a function that makes a call. The call fills a struct. */
 #define GETTER(function, type, call) \
     static int function(void) \
     { \
@@ -127,7 +127,7 @@ static int open_simulated(void) { return sun2xp_open(NULL, &Other); }
 static int close_other(void) { return sun2xp_close(Other); }
 static int open_text(void) { return sun2xp_open_text("[hand]\nfingers = [1]\n", &Other); }
 static int open_named(void) { return sun2xp_open_named("nominal", &Other); }
-/* The functions of the hardware are missing. */
+/* The call is refused, because the functions in Io are NULL. */
 static int open_io(void) { return sun2xp_open_io(NULL, 3, Io, &Other) + SUN2XP_ERROR_ARGUMENT; }
 static int open_io_text(void) { return sun2xp_open_io_text("[hand]\nfingers = [1]\n", 0, NULL, &Other); }
 

@@ -8,7 +8,7 @@ int main(void)
 {
     struct { struct sun2xp_status Known; unsigned char Later[64]; } Larger;
     struct sun2xp_status *Status = &Larger.Known;
-    /* The finger is outstretched. In this pose the tendons can produce less stiffness than the bound. */
+    /* The finger is outstretched. In this pose the tendons cannot produce a stiffness of 6 N/cm, the bound of Kx. */
     static float Stretched[3] = { 0.0F, 0.0F, 0.1F };
     static float Stiffest[3][3] = { { 6.0F, 0.0F, 0.0F }, { 0.0F, 6.0F, 0.0F }, { 0.0F, 0.0F, 6.0F } };
     int finger, byte;

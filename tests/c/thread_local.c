@@ -1,4 +1,5 @@
-/* A planner with large thread-local data: glibc takes it from the stack of every thread, including the library's. */
+/* A planner with large thread-local data. glibc places a copy of this data in the stack of each new thread, including
+   the threads of the library. */
 #include <errno.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

@@ -1,5 +1,5 @@
-/* A planner of sun2xp.h with a window and with short names for its own macros. It also makes the calls of Sun2Xp.h, as
-   planners with one hand do. Also compiled as C++. */
+/* A planner that uses sun2xp.h, macros of X11, and macros of its own with short names. It also makes the calls of
+   Sun2Xp.h, as planners with one hand do. It is also compiled as C++. */
 #ifdef WINDOW_LAST
 #include "sun2xp.h"
 #include "Sun2Xp.h"

@@ -18,7 +18,7 @@ pub struct Bench {
     controller: Controller,
     state: State,
     command: MotorCommand,
-    /// What the finger does while no routine runs.
+    /// What the finger does at present.
     activity: Activity,
     pub report: Report,
     /// A gauge that always shows the same count.
@@ -123,7 +123,8 @@ impl Bench {
         self
     }
 
-    /// Runs a routine to its end. The present controller stays in use until [`Bench::adopt`].
+    /// Runs a routine to its end. If the routine commands the finger, the routine's controller stays in use until
+    /// [`Bench::follow_belief`].
     pub fn calibrate(&mut self, task: Task) -> Result<Findings, Obstacle> {
         self.calibrate_with(task, |_, _| {})
     }

@@ -4,8 +4,9 @@ use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Identified, Task};
 use sun2xp::model::configuration::{ConfiguredFinger, NamedHand};
 
-/// The inertia that identification finds for every rotor, divided by the true inertia per commanded torque. It is NaN
-/// if the configured inertia stays.
+/// Returns the inertia that identification finds for each rotor, as a fraction of the inertia that it should find. It
+/// should find the true inertia divided by the ratio of true to commanded torque. All fractions are NaN if every rotor
+/// keeps its configured inertia.
 fn found(name: &str, rate: f64, change: impl Fn(&mut ConfiguredFinger)) -> [f64; 4] {
     let mut truth = ConfiguredFinger::default();
     change(&mut truth);

@@ -69,7 +69,8 @@ fn a_joint_that_something_blocks() {
     assert!(matches!(refused, Err(Obstacle::WrongRange { joint: 0, .. })), "{refused:?}");
 }
 
-/// The largest torque of the motion back and forth does not depend on `zeroing.torque`.
+/// Identification moves the joints back and forth to measure their friction. The largest torque of this motion does not
+/// depend on `zeroing.torque`.
 #[test]
 fn a_joint_that_is_stuck_while_the_finger_is_identified() {
     let belief = ConfiguredFinger::default();
@@ -138,7 +139,7 @@ fn a_routine_that_takes_too_long() {
     assert!(text.contains("something slows the finger down, or zeroing.time_limit_s is too short"), "{text}");
 }
 
-/// Starts with tight or with slack tendons, at every rate, and swaps every pair.
+/// Swaps every pair of gauges and every pair of motors, at three rates, with tight and with slack tendons.
 #[test]
 fn cables_of_two_gauges_or_two_motors_that_are_swapped() {
     let finger = ConfiguredFinger::default();

@@ -123,7 +123,8 @@ impl Run {
         self.near("mean pulley friction", &[mean], pulley, 0.003 + 0.05 * pulley);
         assert!(self.joint_error < 0.01 + 0.02 * self.truth.simulation.conduit_friction, "{}", self.name);
         self.check_tolerances();
-        // The friction of conduit and shaft in both directions: half of the difference of the pulls.
+        // The friction of conduit and shaft: half of the difference between the pulls in the two directions of motion,
+        // as a part of the tension.
         let (conduit, shaft) = (1.0 + self.truth.simulation.conduit_friction, self.truth.simulation.shaft_friction);
         let expected = 0.5 * (conduit * (1.0 + shaft) - (1.0 - shaft) / conduit);
         self.near("conduit friction", &self.belief.friction.conduit, expected, 0.008 + 0.08 * expected);

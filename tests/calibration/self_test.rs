@@ -154,8 +154,8 @@ fn a_finger_that_is_wired_correctly_passes() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// All tendons are tightened from their pretension to three times their pretension. A gauge with 0.08 of its scale
-/// shows 0.08 of this rise.
+/// All tendons are tightened from their pretension to three times their pretension. A gauge whose gain is only 0.08 of
+/// its original gain shows 0.08 of this rise.
 #[test]
 fn a_gauge_that_hardly_responds_is_reported_with_its_rise() {
     let (truth, belief) = fingers(6000);

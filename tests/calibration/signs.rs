@@ -1,4 +1,4 @@
-//! Tests of the directions in which encoders and gauges count.
+//! Tests that calibration finds the signs of motors, encoders and gauges.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Task};

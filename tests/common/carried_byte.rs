@@ -23,8 +23,9 @@ impl CarriedByte {
 
     /// Opens a pseudo-terminal, or returns `None` if the process can open no more descriptors.
     ///
-    /// Nobody else can open this terminal. A new pseudo-terminal gets the number of one that was closed before, so a
-    /// hand that waits for its unplugged board would find this terminal in its place, and would read the byte.
+    /// The terminal is locked, so that nobody else can open it. Otherwise a hand that waits for its unplugged board
+    /// could find this terminal at the path of the board and read the byte, because a new pseudo-terminal gets the
+    /// number of one that was closed before.
     pub fn open() -> Option<Self> {
         let (near, far) = TTYPort::pair().ok()?;
         let locked: libc::c_int = 1;
@@ -32,8 +33,8 @@ impl CarriedByte {
         let results = unsafe {
             [
                 libc::ioctl(near.as_raw_fd(), libc::TIOCSPTLCK, &raw const locked),
-                // Somebody may have opened the terminal before it was locked. A byte that was read elsewhere must not
-                // block the watch.
+                // Somebody may have opened the terminal before it was locked. If somebody else reads the byte, `delay`
+                // must not block.
                 libc::fcntl(far.as_raw_fd(), libc::F_SETFL, libc::O_NONBLOCK),
             ]
         };
@@ -45,8 +46,8 @@ impl CarriedByte {
         self.far.name()
     }
 
-    /// Sends a byte unless one is underway, and waits for it for at most `longest`. Returns for how long it was
-    /// underway.
+    /// Sends a byte unless one is underway, and waits for at most `longest` until the byte arrives. Returns the
+    /// duration of this wait, or zero if the byte could not be sent.
     pub fn delay(&mut self, longest: Duration) -> Duration {
         if !self.underway && self.near.write_all(&[0]).is_err() {
             return Duration::ZERO;

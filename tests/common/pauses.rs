@@ -188,8 +188,8 @@ const CARRIED_BYTE: u32 = u32::MAX;
 struct Threads {
     accounts: BTreeMap<u32, Account>,
     carried: Option<CarriedByte>,
-    /// Processes that cannot carry the bytes of pseudo-terminals, because they are not unbound workers of the kernel.
-    /// They are not examined again.
+    /// Processes other than the kernel's unbound workers. They cannot carry the bytes of pseudo-terminals, and are not
+    /// examined again.
     others: BTreeSet<u32>,
 }
 

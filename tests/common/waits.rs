@@ -12,10 +12,10 @@ pub enum Part {
     Servo,
     /// Threads of a board: in this process, in another process, or of an emulator.
     Board,
-    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one: a container
-    /// hides the workers, and the watch waits for a core as they do.
+    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The thread that measures the waits counts as a
+    /// worker, because a container hides the workers, and this thread waits for a core as they do.
     Carrier,
-    /// The whole machine: a guest that its host did not run.
+    /// The whole machine, for example a virtual machine that its host did not run.
     Machine,
 }
 
@@ -30,7 +30,7 @@ impl Display for Part {
     }
 }
 
-/// A wait for a core, read from the account of a thread.
+/// A wait for a core, measured at one reading of the kernel's accounting.
 #[derive(Clone, Copy)]
 struct Wait {
     /// Time of the reading, since the start.
@@ -45,7 +45,7 @@ struct Wait {
 #[derive(Default)]
 pub struct Waits {
     noted: Vec<Wait>,
-    /// Duration of the watch.
+    /// Duration of the measurements.
     pub lasted: Duration,
 }
 
@@ -57,14 +57,14 @@ impl Waits {
         }
     }
 
-    /// The measurements of the last seconds.
+    /// The measurements of the last `seconds`.
     pub fn last(&self, seconds: Duration) -> Self {
         let recent = |wait: &Wait| wait.at + seconds >= self.lasted;
         Self { noted: self.noted.iter().copied().filter(recent).collect(), lasted: seconds.min(self.lasted) }
     }
 
-    /// The longest time for which the machine kept one servo, one board and one carrier of bytes, one after the other,
-    /// from running within any `span`. A wait that began before the span counts in full.
+    /// The longest total time for which the machine kept one thread of each role, one after the other, from running
+    /// within any `span`. A wait that began before the span counts in full.
     pub fn most_within(&self, span: Duration) -> Duration {
         self.worst(span).values().sum()
     }

@@ -63,7 +63,7 @@ fn the_optional_keys_name_their_defaults() {
         assert!(finger.geometry.ghost_row.is_some());
         let (q, default_q) = (finger.tendons().expect("tendons").q, reference.tendons().expect("tendons").q);
         assert!((q - default_q).amax() < 1e-6, "{q}{default_q}");
-        // Compares the controllers number by number, except for the rounding of the ghost row.
+        // Compares the controllers number by number, without the ghost row, because the reference gives a rounded one.
         let mut unshown = finger.clone();
         unshown.geometry.ghost_row = None;
         let gains = &finger.controller;
@@ -125,8 +125,8 @@ fn every_range_is_documented() {
     let beyond = ["1e300", "-1e300", "255", "0", "65535", "4294967295"];
     let mut documented = 0;
     for key in keys(&with_optional_keys()) {
-        // Skips texts, choices, and keys whose ranges [finger.1] gives. Skips a surface too, because its ranges are
-        // given together.
+        // Skips texts, booleans, and the keys of [finger.2] and [finger.3], whose ranges [finger.1] gives. Skips inline
+        // tables too, because one comment gives the ranges of all their keys.
         if key.value.starts_with(['"', '{', 't', 'f']) || matches!(key.table.as_str(), "finger.2" | "finger.3") {
             continue;
         }

@@ -94,7 +94,8 @@ fn is_bumpless(scheme: Scheme, jump: f64) {
     for (activity, seconds) in sequence {
         servo.forget();
         servo.cycle(&activity);
-        // At the switch itself state feedback must not jump by more than at rest. Afterwards, in motion, it may.
+        // With state feedback, only the jump at the switch itself is checked: it must not exceed the jumps at rest.
+        // Jumps in the motion that follows may be larger.
         let switched = servo.largest_jump;
         servo.run(seconds, &activity);
         let largest = if scheme == Scheme::StateFeedback { switched } else { servo.largest_jump };

@@ -115,7 +115,7 @@ fn the_model_keeps_its_estimate_while_tensions_carry_no_information() {
         assert!(learnt < 0.9, "{learnt}: nothing learnt that could be forgotten");
         (stuck, learnt)
     };
-    // A slack tendon, and lost replies.
+    // The tensions carry no information while the tendons are slack, and while replies are lost.
     let (mut stuck, before) = learnt(&finger());
     assert!((stuck.estimate(2000, Some(0.5)) - before).abs() < 1e-3);
     assert!((stuck.estimate(2000, None) - before).abs() < 1e-3);
@@ -135,8 +135,8 @@ fn the_model_keeps_its_estimate_while_tensions_carry_no_information() {
 }
 
 /// Sends a finger to a pose for 2 s, with exact sensors. Its motors give 1.2 times the commanded torque. Returns the
-/// final error of the joints and their speed, rad and rad/s. `geometry` selects whether the adapted M also converts
-/// motor angles to joint angles.
+/// final error of the joints, rad, and their largest speed in the last 0.5 s, rad/s. `geometry` selects whether the
+/// adapted motor model M also converts motor angles to joint angles.
 fn with_adapted_kinematics(pose: Vector3<f64>, geometry: bool) -> (f64, f64) {
     let finger = frictionless([1.2; 4]);
     let mut plant = Plant::new(&finger, Vector3::zeros()).unwrap();
@@ -149,7 +149,9 @@ fn with_adapted_kinematics(pose: Vector3<f64>, geometry: bool) -> (f64, f64) {
     for cycle in 0..2000 {
         let tensions = plant.tensions();
         ratio += (tensions.component_div(&(torques / 0.0475)) - ratio) * 0.02;
-        // t = g m_tau / r is an M of g / r, so the radius in (RM)^-T is r / g.
+        // M converts motor torques to tensions: t = M m_tau. A motor that gives g (`ratio`) times its commanded torque
+        // makes the tension t = g m_tau / r, so the adapted M is g / r. (RM)^-T converts motor angles to joint angles.
+        // With the adapted M, the radius of a motor in this conversion is r / g instead of r.
         let radius =
             if geometry { ratio.map(|ratio: f64| ratio.clamp(0.4, 2.0).recip()) } else { Vector4::repeat(1.0) };
         let measured = Measured { motor_angles: plant.motor_angles().component_mul(&radius), tensions };

@@ -1,4 +1,4 @@
-//! Gravity, torque limits of a pose, soft joint limits and warm motors: the same for every scheme.
+//! Gravity, the stiffness that a pose can carry, soft joint limits and warm motors. Most tests run several schemes.
 
 use super::rig::{Loop, SCHEMES, finger_with, spring};
 use nalgebra::{Vector3, Vector4};
@@ -138,8 +138,8 @@ fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
 }
 
 /// Warm motors pull 21 N for a long time while 55 N are wanted. Then 10 N are wanted. An integral that winds up would
-/// keep the motors at their limit. Figure 11 is left out: it has no integral, and a constant gauge makes it learn a
-/// weak motor.
+/// keep the motors at their limit. Figure 11 is left out: it has no integral. The gauges of this test are constant, so
+/// Figure 11 would learn that the motors are weak.
 #[test]
 fn a_warm_motor_does_not_wind_up_the_integral() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {

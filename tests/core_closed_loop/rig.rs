@@ -207,7 +207,8 @@ pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
 
 pub const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
-/// A finger without noise and dither, so that a switch of the controller is the only cause of jumps in the torque.
+/// A finger without gauge noise and without dither of the joints, so that they cause no jumps of the torque when the
+/// controller is switched. With state feedback, the dither of the tensions remains.
 pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = finger_with(scheme);
     finger.simulation.gauge_noise = 0.0;
@@ -215,7 +216,7 @@ pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
     finger
 }
 
-/// A finger at `degrees` without friction.
+/// A finger at `degrees` without Coulomb friction.
 pub fn smooth(scheme: Scheme, degrees: [f64; 3]) -> ConfiguredFinger {
     let mut finger = quiet(scheme);
     finger.friction.motor_coulomb = [0.0; 4];

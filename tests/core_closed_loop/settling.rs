@@ -1,4 +1,4 @@
-//! A finger settles at its target with every scheme and at every rate, and is the commanded spring there.
+//! A finger settles at its target with every scheme of the report and at every rate, and is the commanded spring there.
 
 use super::rig::{Loop, SETTLED, finger_with, poses, spring};
 use nalgebra::Vector3;
@@ -10,8 +10,8 @@ fn settles_everywhere(scheme: Scheme, rate: f64) {
     let mut worst: f64 = 0.0;
     let mut least: f64 = f64::INFINITY;
     // Figure 11 does not compensate the friction of the motors. The finger stops within a band around its target. Where
-    // it stops in this band depends on how it approached: it is 0.020 rad from the target with the report's law, and
-    // 0.022 rad with the exact law.
+    // it stops in this band depends on how it approached. With the report's law it stops 0.020 rad from the target, and
+    // with the exact law 0.022 rad.
     let settled = if scheme == Scheme::Figure11 { 1.25 * SETTLED } else { SETTLED };
     for pose in poses() {
         let mut servo = Loop::new(&finger, rate);

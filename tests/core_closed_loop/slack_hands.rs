@@ -1,4 +1,4 @@
-//! Taking up slack moves no joint, on hands with little and with much friction.
+//! Taking up slack hardly moves the joints, on hands with little and with much friction.
 
 use crate::rig::{Loop, poses_of};
 use nalgebra::{Vector3, Vector4};
@@ -10,12 +10,12 @@ use sun2xp::model::configuration::{ConfiguredFinger, NamedHand};
 /// Longest time until the tendons are under tension, s.
 const LONGEST: f64 = 10.0;
 
-/// A simulated hand, and what happens on it.
+/// A simulated hand, and the motion that is permitted on it.
 struct Hand {
     name: &'static str,
     /// The named hand that the other values change.
     hand: NamedHand,
-    /// True Coulomb friction of motors and joints, divided by that of the named hand.
+    /// True Coulomb friction of motors, motor shafts and joints, divided by that of the named hand.
     coulomb: f64,
     /// True viscous friction of motors and joints, divided by that of the named hand.
     viscous: f64,
@@ -34,7 +34,7 @@ struct Hand {
     compensates: bool,
     /// Rate of the controller, Hz.
     rate: f64,
-    /// Largest motion of a joint from the start to the end, rad.
+    /// Largest permitted motion of a joint from the start to the end, rad.
     limit: f64,
 }
 
@@ -81,7 +81,7 @@ const HANDS: [Hand; 23] = [
     Hand { name: "falling", gravity: [6.0, 2.0, -7.0], slack: 1.0, ..DEFAULT },
 ];
 
-/// What happens on a hand. Every value is the worst.
+/// The largest values over all seeds and poses of a hand.
 #[derive(Default)]
 struct Found {
     /// Motion of a joint from the start to the end, rad.

@@ -1,4 +1,5 @@
-//! State feedback: what the loops of the report cannot do, and proof that the tests can fail.
+//! State feedback: settling, steps, pushes, lost replies, walls, and set points whose Kx does not have full rank.
+//! Pushes without dither show that the test of pushes can fail.
 
 use super::rig::{Loop, finger_with, poses_of, spring};
 use nalgebra::{Matrix3, Vector3};
@@ -277,8 +278,8 @@ fn walls_are_stable() {
         println!("{rate} Hz, {stiffness} N/cm: tip moves {worst:.4} cm rms against a wall");
         println!("{restless:.4?}");
         assert!(touched >= 150, "only {touched} of 216 tips press against their walls");
-        // At the bound of Kx no margin is left, and some contacts swing a little, but nothing grows. At 500 Hz more of
-        // them swing, by a tenth of a millimetre.
+        // At the bound of Kx no margin is left: the tip oscillates a little at some walls, but no oscillation grows. At
+        // 500 Hz it oscillates at more walls, by about 0.1 mm.
         let (most, few) = match (rate, stiffness) {
             (500.0, _) => (0.015, 10),
             (_, 3.0) => (0.005, 0),

@@ -104,10 +104,10 @@ fn no_switch_of_the_spring_jumps() {
     assert!(seen > 10.0, "an immediate switch must be visible: {seen} N");
 }
 
-/// A calibration begins with a new controller whose first commands make the tendons slack. After a rest it tightens the
-/// tendons.
+/// The steps of a calibration: a new controller takes over and lets the tendons out, the motors rest, and the
+/// controller takes up the slack. In the last step, the pulls from the cycle of the take-over must not act again.
 #[test]
-fn a_push_in_the_cycle_of_a_take_over_is_not_repeated_later() {
+fn pulls_in_the_cycle_of_a_take_over_do_not_act_again_later() {
     let finger = quiet(Scheme::StateFeedback);
     let mut servo = Loop::new(&finger, 1000.0);
     servo.run(0.5, &Activity::Follow(isotropic(3.0)));

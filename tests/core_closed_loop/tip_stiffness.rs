@@ -101,7 +101,7 @@ fn a_finger_beyond_its_limit_has_the_reported_stiffness() {
             println!("{scheme:?}, {law:?}: {beyond:.4} rad, off by {:.4}", off(&measured, &reported));
             assert!(beyond > 0.005 && held.servo.report.stiffness_scale == 1.0, "{scheme:?}, {law:?}: {beyond} rad");
             assert!((reported - Matrix3::identity() * 6.0).symmetric_eigenvalues().max() > 1.0, "{reported}");
-            // Under this load the error of the report's law is 3 % to 5 %.
+            // Under this load the error of `Law::Report` is 3 % to 5 %.
             let most = if law == Law::Exact { 0.03 } else { 0.06 };
             assert!(off(&measured, &reported) < most, "{scheme:?}, {law:?}: {measured} instead of {reported}");
         }
@@ -124,8 +124,8 @@ fn a_finger_beyond_its_limit_has_less_of_its_stiffness() {
     }
 }
 
-/// A finger whose tip is pushed by `load`, N, so that joint 2 is beyond its limit, and how far the joint is beyond it,
-/// rad.
+/// Returns a finger whose tip is pushed by `load`, N, so that joint 2 is beyond its limit. Also returns how far the
+/// joint is beyond this limit, rad.
 fn beyond_its_limit(scheme: Scheme, law: Law, stiffness: f64, load: f64) -> (Held, f64) {
     let finger = smooth(scheme, [0.0, 30.0, 120.0]);
     let held = Held::new(&finger, law, isotropic(stiffness), Vector3::new(0.0, 0.0, -load));

@@ -105,7 +105,7 @@ impl IndependentFinger {
     }
 }
 
-/// T is a quadratic form of the rates: sum of m (dp/dtheta)' (dp/dtheta) over the points.
+/// The matrix H of the kinetic energy T = rate' H rate / 2: the sum of m (dp/dtheta)' (dp/dtheta) over the points.
 fn inertia(theta: &Vector3<f64>) -> Matrix3<f64> {
     let slope = 1e-4;
     let mut moved = Vec::new();

@@ -71,8 +71,8 @@ impl Case {
         Self { configure, ..self }
     }
 
-    /// Lets the monitors learn the mismatch of the finger before the injection. `within` becomes the longest time until
-    /// the motors reach their end state, ms.
+    /// Lets the monitors learn, before the injection, how the finger differs from its configuration. `within` becomes
+    /// the longest time until the motors reach their end state, ms.
     fn after_learning(self, within: f64) -> Self {
         Self { after: 3000, within, ..self }
     }

@@ -58,7 +58,8 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
         if let Some(detectable) = case.detectable.filter(|_| known.is_none()) {
             let holds = (detectable.holds)(&bench.truth, &injected, bench.finger());
             since = since.filter(|_| holds).or(holds.then_some(now));
-            // A fault may be named shortly before the stretch of `lasts_ms` is over. It belongs to this stretch too.
+            // If the fault is named before the stretch of `lasts_ms` is over, it became detectable when this stretch
+            // began.
             known = since.filter(|since| now - since >= detectable.lasts_ms || named);
         }
         found = found.or(named.then_some(now));
@@ -77,7 +78,8 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
     }
     let found = found.unwrap_or(f64::INFINITY);
     let ended = if warns { 0.0 } else { bench.ended().unwrap_or(f64::INFINITY) };
-    // The servo knows its own command before the motors do, so it may name a fault earlier.
+    // The servo knows its own command before the motors do, so it may name a fault before the true state shows it. Then
+    // the fault counts as detectable from the moment at which it is named.
     let detectable = known.unwrap_or(found).min(found);
     bench.repair();
     if !warns {
@@ -168,7 +170,7 @@ fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
         let report = bench.report();
         let answered = report.losses.lost_replies == lost;
         lost = report.losses.lost_replies;
-        // Six times the noise of a gauge.
+        // The limit of 0.2 N is more than six times the noise of a gauge, which is 0.03 N rms.
         let off = (report.cycle.tensions - bench.truth.tensions).amax();
         assert!(!answered || off < 0.2, "{fault:?}, {seed}: {off} N from the truth");
     }

@@ -108,7 +108,7 @@ impl Bench {
 
     /// Like [`Self::new`], with a finger that differs from the configuration of its controller.
     pub fn simulating(truth: &Configuration, mut configuration: Configuration, seed: u64) -> Self {
-        // Uses the time limits of a real port.
+        // The finger has the time limits of a real port, because its port is not named "simulated".
         configuration.fingers[0].port = "in memory".into();
         // A blow can leave a tendon slack by centimetres, and slack is taken up slowly.
         configuration.hand.open_timeout_ms = 60_000;

@@ -15,7 +15,7 @@ use sun2xp::simulated::SimulatedCable;
 struct BusyMachine {
     /// The time of the host, ns.
     host: Cell<u64>,
-    /// The board's time does not pass this time without a new command, ns.
+    /// The board's time stands still when it has reached this time, ns, until the next command.
     limit: u64,
     /// The reply on its way arrives at this time of the host, ns.
     release: u64,

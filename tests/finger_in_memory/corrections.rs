@@ -49,7 +49,7 @@ fn a_corrected_set_point_expires_with_the_set_point_of_the_planner() {
 }
 
 #[test]
-fn a_set_point_that_is_corrected_before_the_servo_takes_it_has_its_validity() {
+fn a_correction_before_the_servo_takes_a_set_point_keeps_its_validity() {
     let mut bench = Bench::new();
     send(&bench);
     correct(&bench);
@@ -64,7 +64,7 @@ fn a_corrected_set_point_can_be_renewed() {
     let mut bench = Bench::new();
     send(&bench);
     bench.cycles(50);
-    // The servo takes both in the same cycle.
+    // The servo takes the renewal and the correction in the same cycle.
     bench.mailbox.keep_valid(VALID).expect("not faulted");
     correct(&bench);
     bench.cycles(90);
@@ -76,9 +76,9 @@ fn a_corrected_set_point_can_be_renewed() {
     assert!(bench.report().expired);
 }
 
-/// The set point expires in each round. Each round makes the correction at a later reading of the clock in the cycle of
-/// the expiry. A correction that is made after the servo has taken its input and before the report is published still
-/// names the set point that has expired.
+/// The set point expires in each round. The correction is made in the cycle of the expiry, in each round at a later
+/// reading of the clock. A correction that is made after the servo has taken its input and before the report is
+/// published still refers to the expired set point.
 #[test]
 fn a_correction_does_not_undo_an_expiry() {
     let mut bench = Bench::new();

@@ -1,5 +1,5 @@
 //! Gravity as an input of the servo: it takes effect in the next cycle, every record contains it, and a replay computes
-//! the same across its changes, a fault and a recovery.
+//! the same commands across changes of gravity, a fault and a recovery.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;

@@ -1,5 +1,5 @@
-//! Faults and warnings that the finger's servo detects itself. tests/fault_injection tests most of those of tendons,
-//! gauges, encoders and motors, and tests/hand_ports those of opening a port.
+//! Faults and warnings that the finger's servo detects itself. tests/fault_injection tests most faults and warnings
+//! of tendons, gauges, encoders and motors. tests/hand_ports tests the errors when a port is opened.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
 use nalgebra::Vector3;
@@ -126,7 +126,7 @@ fn a_late_servo_gives_a_warning() {
     }
     let warning = bench.warns(FaultKind::Overrun);
     assert!((2.0..10.0).contains(&warning.value), "{warning}");
-    // The last skipped period is counted in the next cycle.
+    // The periods that are skipped in the last round are counted only in the next cycle.
     assert!(bench.report().losses.skipped_periods >= 99, "{}", bench.report().losses.skipped_periods);
 }
 

@@ -68,7 +68,8 @@ impl Random {
     }
 }
 
-/// Sends, installs, pushes or does nothing. Returns whether it has sent a path.
+/// Sends a set point or a path, installs or removes a reflex, pushes the finger, or does nothing. Returns whether it
+/// has sent a path.
 fn disturb(bench: &mut Bench, random: &mut Random, rules: &mut Vec<u32>) -> bool {
     match random.below(8) {
         0 => {

@@ -23,8 +23,9 @@ fn mapped() -> Vec<Range<usize>> {
     joined
 }
 
-/// Pages of a value that was replaced during construction are unmapped, and may be mapped again for another value. So
-/// the test looks for ranges that are not mapped, and for ranges that overlap.
+/// Pages of a value that was replaced during construction are unmapped, and may be mapped again for another value. The
+/// servo must no longer list such pages for the replaced value. So the test looks for ranges that are not mapped, and
+/// for ranges that overlap.
 #[test]
 fn every_range_to_lock_is_mapped_and_belongs_to_one_value() {
     let bench = Bench::new();

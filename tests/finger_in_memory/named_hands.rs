@@ -8,7 +8,7 @@ use sun2xp::model::configuration::NamedHand;
 /// Largest motion of a joint while its tendons are tightened, rad.
 const OPENING: f64 = 0.03;
 
-/// Largest error of a joint at rest, rad. The gauges of a finger that was not calibrated displace it.
+/// Largest error of a joint at rest, rad. Errors of the gauges displace the joints of an uncalibrated finger.
 const DISPLACED: f64 = 0.06;
 
 fn open(hand: NamedHand) -> Bench {

@@ -14,7 +14,7 @@ fn impatient(configuration: &mut Configuration) {
 
 /// Runs cycles until the finger is no longer opening. After each cycle, other work on the machine takes `pause`, ms.
 /// Returns the fault, and the time from the beginning to the fault, ms.
-fn opens_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
+fn fault_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
     let begun = bench.world.now();
     while bench.stage() == Stage::Opening {
         bench.cycles(1);
@@ -30,7 +30,7 @@ fn opens_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
 #[test]
 fn an_overloaded_machine_is_reported_at_the_time_out() {
     let mut bench = Bench::believing(impatient, |_| {});
-    let (fault, lasted) = opens_on_a_machine_with(&mut bench, 15);
+    let (fault, lasted) = fault_on_a_machine_with(&mut bench, 15);
     assert!((1490.0..1550.0).contains(&lasted), "{lasted} ms: {fault}");
     assert_eq!(fault.kind, FaultKind::OpeningTimedOut, "{fault}");
     assert!((1500.0..1550.0).contains(&fault.value), "{fault}");
@@ -44,7 +44,7 @@ fn a_slack_tendon_is_reported_at_the_time_out() {
     // The motor unwinds its tendon instead of winding it. The machine is idle in the first run and busy in the second.
     for pause in [0, 3] {
         let mut bench = Bench::believing(impatient, |belief| belief.fingers[0].motor.sign = [1, 1, 1, -1]);
-        let (fault, lasted) = opens_on_a_machine_with(&mut bench, pause);
+        let (fault, lasted) = fault_on_a_machine_with(&mut bench, pause);
         assert!((1490.0..1550.0).contains(&lasted), "{lasted} ms: {fault}");
         let expected = if pause == 0 { FaultKind::SlackTendon } else { FaultKind::OpeningTimedOut };
         assert_eq!(fault.kind, expected, "{fault}");

@@ -27,12 +27,14 @@ fn in_force(bench: &Bench) -> f64 {
     bench.report().set_point.stiffness[(0, 0)]
 }
 
-/// The servo takes only the newest set point. The planner may have sent a damping that suits only the softer Kx.
+/// The servo takes only the newest set point of a period: that of the path, and not the one with the softer Kx before
+/// it. The path must not begin with the old Kx, because the planner may have sent a damping that suits only the softer
+/// Kx.
 #[test]
 fn a_path_begins_with_the_stiffness_that_was_sent_in_the_same_period() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
-    // The second of two paths begins with the stiffness too, because it replaces a path that has not begun.
+    // The second of two paths begins with the softer Kx too, because it replaces a path that has not begun.
     for paths in [1, 2] {
         stiffen(&bench, 4.0);
         bench.cycles(10);

@@ -111,7 +111,7 @@ fn a_grip_without_effect_ends_a_path() {
     let grip = Reaction::Grip { direction: Vector3::x(), by: 1.0, most: 5.0 };
     let reflex = rule(Condition::JointAbove { joint: 1, angle: 0.6 }, grip);
     bench.reflexes.install(Reflex { inhibition: 0.1, ..reflex }).expect("a place");
-    // The spring presses against this force, and so not in the direction of the grip.
+    // The spring presses against this force, opposite to the direction of the grip, so the grip has no effect.
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(1.0, 0.0, 0.0)));
     send(&bench, &[joints(2.0, [0.1, 0.9, 1.0])]);
     let springs = bench.report().springs;

@@ -34,7 +34,8 @@ fn refused_paths_name_the_pose_and_the_remedy() {
         (vec![joints(0.8, [0.2, 1.74, 1.1]), joints(1.6, [0.2, 1.74, 1.2])], "permitted range", libc::ERANGE),
         (vec![tip(1.0, [0.0, 0.0, 20.0])], "pose 0", libc::ERANGE),
         (vec![stiff], "eigenvalue of Kx", libc::ERANGE),
-        // The kind of the error counts, and not the order of the poses.
+        // If several poses are wrong, the kinds of the errors decide which error is reported. The order of the poses
+        // does not matter.
         (vec![stiff, skew(2.0)], "symmetric", libc::EDOM),
         (vec![stiff, no_number], "NaN", libc::EINVAL),
         (vec![skew(1.0), no_number], "NaN", libc::EINVAL),
@@ -47,7 +48,7 @@ fn refused_paths_name_the_pose_and_the_remedy() {
 #[test]
 fn a_path_of_an_earlier_spring_phase_names_the_cause_and_the_remedy() {
     let text = PathError::Moved(FingerNumber::ONE).to_string();
-    for words in ["recovered or calibrated", "expired", "effect of a reflex", ": send the path again"] {
+    for words in ["recovered or calibrated", "expired", "inhibition after a reflex", ": send the path again"] {
         assert!(text.contains(words), "{words}: {text}");
     }
 }
@@ -81,8 +82,8 @@ fn poses_that_are_a_millisecond_apart_are_accepted() {
     assert!(matches!(planned(0.99e-3), Err(PathError::Time { pose: 0, .. })));
 }
 
-/// The text gives the factor with two digits. The path is admitted with this factor, and refused with the next smaller
-/// one.
+/// The text gives the factor with two decimal places. The path is admitted with this factor, and refused with the next
+/// smaller one.
 #[test]
 fn the_factor_of_a_path_that_is_too_fast_is_rounded_up() {
     let rest = Reference { joints: TARGET, ..Reference::default() };
@@ -97,7 +98,8 @@ fn the_factor_of_a_path_that_is_too_fast_is_rounded_up() {
     }
 }
 
-/// A finger that still settles has small derivatives, which a single polynomial over 30 s would turn into many rad.
+/// A finger that still settles has small speeds, accelerations and jerks. A single polynomial over 30 s that begins
+/// with them would move the joints by many rad.
 #[test]
 fn a_slow_path_of_a_finger_in_motion_is_accepted() {
     let small = Vector3::new(1.0, -1.0, 0.5);
@@ -121,7 +123,7 @@ fn a_slow_path_of_a_finger_in_motion_is_accepted() {
             // A path that first brakes does not continue the acceleration and the jerk.
             assert!(begin.accelerations.amax() < 1e-9 && begin.jerk.amax() < 1e-6);
             assert!((plan.end() - Vector3::from(angles)).amax() < 1e-3);
-            // Except while it brakes, the finger stays between both places.
+            // The finger stays between the first and the last place. Only the braking may carry it a little beyond.
             let [low, high] = [TARGET.inf(&angles.into()), TARGET.sup(&angles.into())];
             for piece in pieces {
                 for step in 0..=10 {

@@ -194,8 +194,8 @@ fn a_finger_that_becomes_a_spring_has_arrived_in_the_same_report() {
     assert_eq!((in_force, report.arrival), there);
 }
 
-/// The gate of a hand keeps only the low bits of group numbers. After 2^23 more groups it takes the group from before
-/// the fault for a group that is not posted yet.
+/// The gate of a hand keeps only the low bits of group numbers. After 2^23 more groups, the gate mistakes the group
+/// from before the fault for one that is not posted yet.
 #[test]
 fn a_group_from_before_a_fault_does_not_hold_later_set_points() {
     let mut bench = Bench::new();

@@ -32,8 +32,8 @@ fn a_slewing_anchor_is_reported_with_its_rates() {
     }
 }
 
-/// A path of one polynomial of 30 s that began with the acceleration of the anchor would lead far beyond the joint
-/// limits. The finger therefore first brakes to rest.
+/// If a path of 30 s were one polynomial that begins with the acceleration of the anchor, it would lead far beyond the
+/// joint limits. The finger therefore first brakes to rest.
 #[test]
 fn a_slow_path_begins_smoothly_while_the_finger_settles() {
     for cycles in [5, 20, 50, 100] {

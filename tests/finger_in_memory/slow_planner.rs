@@ -11,7 +11,7 @@ use sun2xp::finger::{Condition, FaultKind, Reaction, Reference, Reflex, Replaced
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ExpiryReaction;
 
-/// A planner sends a tip on a circle ten times a second.
+/// Ten times a second, a planner sends the joint angles for a position of the tip on a circle.
 #[test]
 fn a_slow_stream_of_set_points_becomes_smooth_motion() {
     let mut bench = Bench::with(|configuration| configuration.fingers[0].motion.interpolate_ms = Some(100.0));
@@ -192,7 +192,7 @@ fn a_renewal_limits_a_path_and_a_later_set_point_ends_it() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     send(&bench, &[joints(5.0, [0.3, 0.7, 1.2])]);
-    // The planner sends both before the servo takes either.
+    // The planner sends the path and the renewal before the servo takes either of them.
     bench.mailbox.keep_valid(validity(100, 1000)).expect("not faulted");
     bench.cycles(102);
     assert!(bench.report().expired, "the validity counts from the renewal, and not from the end of the path");
@@ -216,7 +216,7 @@ fn a_finger_without_a_command_can_stop_after_a_time_too() {
 
 /// The numbers of set points that are discarded during an inhibition are used again for later set points.
 #[test]
-fn a_renewal_of_a_discarded_set_point_does_not_shorten_a_later_one() {
+fn a_renewal_of_a_discarded_set_point_does_not_shorten_a_later_validity() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     let (condition, reaction) = (Condition::JointAbove { joint: 2, angle: 0.5 }, Reaction::Hold);

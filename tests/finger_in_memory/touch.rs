@@ -137,7 +137,7 @@ fn an_element_that_is_not_configured_is_counted() {
     assert_eq!(bench.touch.unknown(), 1);
 }
 
-/// A finger without elements asks for nothing.
+/// The servo of a finger without configured elements does not ask the board for touch events.
 #[test]
 fn a_finger_without_elements_sends_no_requests() {
     let mut bench = Bench::believing(two_elements, |belief| belief.fingers[0].touch.elements.clear());
@@ -148,8 +148,8 @@ fn a_finger_without_elements_sends_no_requests() {
     assert_eq!((bench.touch.unknown(), bench.touch.count()), (0, 0));
 }
 
-/// Ends the contact of a pressed element, and resets the board before it has reported that. Then presses element 0
-/// while the finger is faulted.
+/// Ends the contact of a pressed element, and resets the board before the board has reported the end of the contact.
+/// Then presses element 0 while the finger is faulted.
 fn resets(bench: &mut Bench) {
     push(bench, [0.0; 3]);
     bench.with_finger(|finger| finger.reset());

@@ -119,8 +119,8 @@ fn kill_a_planner(
     let begun: Vec<u32> = asked().map(|asked| asked.samples).collect();
     let moved_on = || asked().zip(&begun).all(|(asked, begun)| asked.samples > begun + 200);
     let ran = wait_until(PATIENCE / 2, || planner.has_ended() || moved_on() && running());
-    // The kill may take longer than the watchdog's time, so it is not checked afterwards that the fingers were running
-    // until the kill. `ended_by_watchdog` detects a finger that the planner stopped itself.
+    // The kill may take longer than the watchdog's time. So no check after the kill shows whether the fingers were
+    // running until then. `ended_by_watchdog` detects a finger that the planner stopped itself.
     let killed = planner.kill();
     // Commands in transit still arrive. 400 ms after the last of them, the slowest watchdog has had time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;

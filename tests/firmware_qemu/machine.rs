@@ -115,8 +115,8 @@ impl Machine {
 struct Emulator {
     process: Child,
     port: PathBuf,
-    /// Keeps the host end of the terminal open. The emulator discards what it sends to a closed one, and checks only
-    /// once a second whether it was opened.
+    /// Keeps the host end of the terminal open. While this end is closed, the emulator discards its output, and checks
+    /// only once a second whether the end was opened.
     _end: File,
     _folder: TempDir,
     requests: File,

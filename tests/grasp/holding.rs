@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use sun2xp::finger::Stage;
 use sun2xp::model::configuration::{ConfiguredSimulation, ObjectShape};
 
-/// Depth of the anchors below the surface of the object, cm. With 3 N/cm, each finger presses with 2.3 N.
+/// Depth of the anchors (the set points of the tips) below the surface of the object, cm. With 3 N/cm, each finger
+/// presses with 2.3 N.
 const SQUEEZE: f64 = 0.8;
 
 /// Height of a lift, cm.

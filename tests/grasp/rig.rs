@@ -158,7 +158,7 @@ impl GraspingHand {
         self.mailboxes.iter().map(|mailbox| mailbox.report().stage).collect()
     }
 
-    /// Closes the fingers around the object on the table and waits until it is at rest.
+    /// Closes the fingers around the object on the table, and gives the object 500 cycles to come to rest.
     pub fn grasp(&mut self, squeeze: f64) {
         self.run(300);
         self.send_around(START, RADIUS + 0.4);

@@ -127,7 +127,7 @@ fn faults_of_the_hardware_are_bits_of_the_status() {
         assert!(!rig.status().has(bit) && rig.status().has(Status::ZERO_VALID));
         rig.switches.lock().faults = fault;
         assert!(rig.status().has(bit), "{fault:?}");
-        // A fault that was there for one exchange is not forgotten before the next start.
+        // The bit of a fault stays set until the next start, even if the fault was present in only one exchange.
         rig.switches.lock().faults = IoFaults::default();
         assert!(rig.status().has(bit), "{fault:?}");
     }

@@ -125,8 +125,8 @@ fn lost_exchanges_fault_the_finger_and_it_recovers() {
     assert_eq!(switches.lock().stops, 2);
 }
 
-/// The start of the hardware takes longer than the 5 s after which a servo that does not take the finger is considered
-/// stalled.
+/// The start of the hardware takes longer than the 5 s within which the servo must take back a repaired finger. The
+/// start must not count toward these 5 s.
 #[test]
 fn a_finger_recovers_although_its_hardware_starts_slowly() {
     let (hand, switches) = open(&patient(), &[1], true).expect("open");

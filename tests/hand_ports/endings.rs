@@ -123,7 +123,8 @@ fn a_planner_that_returns_leaves_its_motors_holding_for_a_while() {
     planner.ends();
     for (index, board) in boards.iter_mut().enumerate() {
         let state = board.wait_for(index + 1, "released", |state| !holds(state));
-        assert!(state.has(Status::ENDED) && state.limp(), "{state:?}");
+        let [now, _, ended] = state.times[..] else { panic!("three times") };
+        assert!(state.has(Status::ENDED) && state.limp() && now - ended >= 1499.0, "{state:?}");
         assert!(!state.has(Status::WATCHDOG_TRIPPED), "left to the watchdog: {state:?}");
     }
 }

@@ -1,5 +1,5 @@
-//! Every configuration that the documentation prints is opened on boards, and all fingers of the hand are moved. Only
-//! the ports, the folders and `hand.watchdog_ms` differ from the printed text.
+//! Every complete configuration that `docs/configuration.md` prints is opened on boards, and all fingers of the hand
+//! are moved. Only the ports, the folders and `hand.watchdog_ms` differ from the printed text.
 
 use crate::rig::{Board, PATIENT, close, settles, turn};
 use std::collections::BTreeMap;
@@ -64,7 +64,7 @@ fn replaced(text: &str, path: &str, other: &str) -> String {
 fn moves(what: &str, file: &Path, text: &str) {
     std::fs::write(file, text).expect("written");
     let mut configured = Configured::read(file).unwrap_or_else(|error| panic!("{what}: {error}"));
-    // A busy machine delays the bytes of a pseudo-terminal by several ms, as no cable does.
+    // A busy machine delays the bytes of a pseudo-terminal by several ms. A cable does not.
     configured.configuration.hand.watchdog_ms = 1000;
     let hand = Hand::open_as(configured).unwrap_or_else(|error| panic!("{what}: {error}"));
     let fingers = hand.fingers();

@@ -69,7 +69,7 @@ fn a_silent_board_faults_its_finger_and_the_watchdog_brings_the_board_to_its_end
     goes(&open(on_boards(&boards)), 1, START);
 }
 
-/// A board in this process, for disturbances for which `sun2xp board` has no order.
+/// One board for all fingers, in this process, and a hand on it. Tests can disturb and examine its fingers directly.
 fn own_board() -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })

@@ -17,8 +17,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
-/// Longest time by which a board that sends without end may delay a call. A busy machine needs most of this time. If
-/// the servo read without a bound, a flood would block it for longer.
+/// Longest time by which a board that sends without end may delay a call. Most of this time is a reserve for a busy
+/// machine. If the servo read without a bound, a flood would block it for longer than this time.
 const PROMPT: Duration = Duration::from_secs(1);
 
 /// A board with finger 2 that repeats one frame on request, and sends no answers meanwhile.
@@ -43,7 +43,7 @@ impl FloodingBoard {
             let thread = std::thread::Builder::new().name("sun2xp board".into());
             thread.spawn(move || {
                 run_first();
-                // The port stays open here too, so that the host may open and close it.
+                // This thread keeps the port open. So the pseudo-terminal remains usable when the host closes the port.
                 let _port = port;
                 let mut board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::TWO]).expect("a board");
                 let mut clock = PacedTime::new(Pace::patient(500.0), now());
@@ -121,7 +121,7 @@ fn a_board_that_begins_to_flood_faults_its_finger_only() {
             let boards = three_boards();
             let board = FloodingBoard::start(frame, false);
             let mut configuration = on_ports([&boards[0].port, &board.port, &boards[2].port]);
-            // Long enough for a busy machine, and short enough for a test.
+            // This time is longer than the usual pauses of a busy machine, and the test still ends soon.
             configuration.hand.watchdog_ms = 300;
             if one_thread {
                 configuration.fingers.iter_mut().for_each(|finger| finger.thread = 1);

@@ -12,7 +12,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 
-/// Two periods less than the watchdog's 18 ms: the servo stops a finger one period before its watchdog does.
+/// Two periods less than the watchdog's 18 ms. The servo stops a finger one period before the watchdog would, and this
+/// limit is one more period shorter.
 const TOLERATED_PAUSE: Duration = Duration::from_millis(16);
 
 /// Longest time to the motors' end state, ms, from the kill and from the last command.

@@ -46,7 +46,7 @@ fn three_boards_on_three_ports() {
     move_all(&hand);
     for (index, board) in boards.iter_mut().enumerate() {
         let sent = target(index as i32 + 1);
-        // The true joints.
+        // The board's state contains the true joint angles.
         let there = |state: &State| state.joints.iter().zip(sent).all(|(is, sent)| (is - sent).abs() < 0.03);
         let state = board.wait_for(index + 1, "there", |state| there(state) && !state.limp());
         assert!(state.has(Status::ENABLED), "{state:?}");
@@ -82,7 +82,7 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
     goes(&hand, 2, TARGET);
     close(hand);
 
-    // No motor winds the tendons now, so a finger that is pushed by hand slackens the tendons on its other side.
+    // No motor winds the tendons now, so pushing the finger slackens the tendons whose paths become shorter.
     let off = |state: &State| (Vector3::from_column_slice(&state.joints) - Vector3::from(TARGET)).amax();
     let at_rest = |board: &mut Board| {
         let mut last = board.state(2);

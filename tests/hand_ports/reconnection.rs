@@ -65,7 +65,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
 }
 
 /// A board that does not keep its zeros never reports valid zeros. Its restart is visible only because it has lost its
-/// terms.
+/// terms (the values of the last Configure).
 #[test]
 fn a_finger_does_not_recover_if_a_board_that_does_not_keep_its_zeros_has_restarted() {
     let _turn = turn();
@@ -82,7 +82,8 @@ fn a_finger_does_not_recover_if_a_board_that_does_not_keep_its_zeros_has_restart
         Err(HandError::Faulted { finger: FingerNumber::TWO, fault }) => assert_eq!(fault.kind, FaultKind::ZeroLost),
         other => panic!("not refused for its zero: {other:?}"),
     };
-    // The first recovery gives the board its terms again. The neighbours run.
+    // The other fingers of the port run. The first recovery gives the board its terms again, so the second recovery
+    // cannot recognise the restart by missing terms.
     refused();
     refused();
     // The next recovery repairs the whole port.

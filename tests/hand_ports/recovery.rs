@@ -133,7 +133,7 @@ fn a_board_that_lost_its_power_recovers_on_the_same_port() {
     let (board, hand) = one_port();
     board.with_finger(2, |finger| finger.reset()).expect("finger 2");
     assert_eq!(faults(&hand, 2), FaultKind::BoardReset);
-    // Its neighbours run on the same link.
+    // Fingers 1 and 3 keep running on the same link.
     hand.send_position(1, TARGET).expect("sent");
     recovers(&hand, 2);
     goes(&hand, 1, TARGET);
@@ -212,8 +212,8 @@ fn two_threads_that_recover_fingers_of_one_port_both_succeed() {
     close(hand);
 }
 
-/// A finger shows its fault until its servo has received the restored port. A caller that recovers it at this moment
-/// only waits.
+/// A finger shows its fault until its servo has received the restored port. Until then, another caller that recovers
+/// the finger only waits.
 #[test]
 fn recovering_a_finger_that_was_just_repaired_does_not_report_a_shared_port() {
     let _turn = turn();

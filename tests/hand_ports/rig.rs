@@ -16,7 +16,7 @@ pub const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
 /// The start pose of the simulated fingers, rad.
 pub const START: [f64; 3] = [0.0, 30.0 * std::f64::consts::PI / 180.0, 60.0 * std::f64::consts::PI / 180.0];
 
-/// Longer than any wait of a test should take on a busy machine.
+/// Time limit of a wait. It is longer than any wait of a test should take on a busy machine.
 const LIMIT: Duration = Duration::from_secs(20);
 
 /// Allows one hand at a time, because the servos and boards of two hands would delay each other. The guard must be kept
@@ -28,8 +28,8 @@ pub fn turn() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes the board's finger stand still while a busy machine delays the commands of its host, which sends 500 of them a
-/// second, as in [`on_ports`].
+/// Options of a board whose host sends 500 commands a second, as in [`on_ports`]. While a busy machine delays these
+/// commands, the board's fingers stand still.
 pub const PATIENT: [&str; 2] = ["--patient", "500"];
 
 /// The program `sun2xp board` and its standard streams.
@@ -66,7 +66,7 @@ impl Board {
         Self::start_with(&[&PATIENT[..], &["--link", link]].concat(), fingers)
     }
 
-    /// A board whose time is real time.
+    /// Starts a board whose simulation continues in real time while no commands arrive.
     pub fn start_impatient(fingers: &[&str]) -> Self {
         Self::start_with(&[], fingers)
     }

@@ -20,7 +20,7 @@ fn stopped_fingers_of_one_port_recover_one_by_one_while_the_others_move() {
     assert_eq!(fault(&hand, 1), Some(FaultKind::FingerStopCall), "only finger 3 recovers");
     goes(&hand, 2, TARGET);
     goes(&hand, 3, START);
-    // A finger that has recovered stops again, even if the stop was requested during its recovery.
+    // A stop that is requested during a recovery stops the finger again after the recovery.
     let recovering = Recovering::begin(&hand, 1).expect("begun");
     hand.stop(1).expect("a finger");
     recovering.reconnect().unwrap_or_else(|error| panic!("{error}"));

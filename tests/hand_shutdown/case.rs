@@ -158,7 +158,8 @@ impl Case {
                     reach(planner, self.stage);
                 }
             }
-            // Threads that calibrate or wait may end only when the hand is closed, so the scope joins them after the close.
+            // Threads that calibrate or wait may end only when the hand is closed. So the scope joins them after the
+            // close.
             let ends = |action| !matches!(action, Action::Calibrate | Action::WaitForEvent | Action::WaitForFinger);
             for (_, thread) in threads.into_iter().filter(|(action, _)| ends(*action)) {
                 thread.join().expect("no panic");

@@ -22,7 +22,7 @@ const WAIT: Duration = Duration::from_secs(1);
 
 /// A planner. Its calls may be refused, because the hand is shut down meanwhile.
 pub trait Planner: Sync {
-    /// Opens a hand, with the motors off if `limp`. Returns whether it is open.
+    /// Opens a hand, with the motors off if `limp`. A planner in C ignores `limp`. Returns whether the hand is open.
     fn open(&self, limp: bool) -> bool;
 
     fn stop_all(&self);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Keywords of C and C++ that the header uses outside of the declarations.
+/// Keywords of C and C++ in `src/capi/header/after.h`, the part of the header after the declarations.
 const KEYWORDS_OF_AFTER: &[&str] = &[
     "char",
     "class",
@@ -28,7 +28,7 @@ const KEYWORDS_OF_AFTER: &[&str] = &[
 /// name. The macros of the header use the other three names.
 const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
-/// Every name that the declarations use, and the C keywords around them.
+/// Returns every name in `code` (the declarations) except [`MACROS`], and all [`KEYWORDS_OF_AFTER`].
 pub fn names(code: &str) -> BTreeSet<&str> {
     let lines = code.lines().filter(|line| !line.starts_with('#'));
     let words = lines.flat_map(|line| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'));

@@ -13,13 +13,13 @@ const NOBODY: u32 = 65534;
 /// The list of Python packages beside each copy of `tests/run`.
 const PYTHON_PACKAGES: &str = "mcap==1\n";
 
-/// Runs a copy of `tests/run` in a folder of its own. The Python packages of its list are installed.
+/// Runs a copy of `tests/run` in a folder of its own. The Python packages of its list count as installed already.
 fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     run_script_beside(PYTHON_PACKAGES, programs, user)
 }
 
 /// Runs a copy of `tests/run` in a folder of its own. Only these programs and a few of the system's are available. The
-/// Python packages of the list `installed` are installed.
+/// Python packages of the list `installed` count as installed already.
 fn run_script_beside(installed: &str, programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a scratch folder");

@@ -4,8 +4,8 @@ use crate::{c, said, tools, turn, write_program};
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Environment variable of a process that runs this test program as if on a machine without some tools. Its value is
-/// the compilers that are then used.
+/// This environment variable is set in a child process that runs this test program as on a machine without some tools.
+/// Its value lists the compilers that the tests must use there.
 const BARE: &str = "SUN2XP_TEST_BARE";
 
 #[test]

@@ -122,7 +122,7 @@ fn an_identified_hand_has_no_fault() {
 }
 
 /// Poses, degrees, in which a push of 1.2 N along x makes two tendons slack for a moment. The other two tendons
-/// meanwhile slide in their conduits, and turn back when the first two are taut again.
+/// meanwhile slide in their conduits, and slide back when the first two are taut again.
 const SLACKENED: [[f64; 3]; 4] = [[-9.4, 6.6, 41.8], [-9.9, 1.8, 53.1], [-15.5, -4.0, 60.0], [-12.0, 3.0, 50.0]];
 
 /// The stiffness tolerance is small, as after an identification. So only the tolerance for friction can explain the
@@ -247,8 +247,8 @@ fn a_drifting_gauge_of_a_rubbing_hand_is_reported() {
     }
 }
 
-/// Prints how many fingers of each hand have a false alarm. docs/faults.md says that none has one. Run it with
-/// `cargo test --test monitors_on_rubbing_hands -- --ignored --nocapture`.
+/// Prints how many fingers of each hand have a false alarm. docs/faults.md says that no finger has a false alarm. Run
+/// this test with `cargo test --test monitors_on_rubbing_hands -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn table_of_false_alarms() {

@@ -1,5 +1,7 @@
-//! Every snippet of README and of the pages in docs is compiled and run as it stands, or read as the library reads it.
-//! python/tests/test_examples.py and ros/tests/test_node.py run those in Python. `LANGUAGES` names the tests of the
+//! Every snippet of README and of the pages in docs is tested. The files beside this one compile and run the snippets
+//! in C and Rust, and read the snippets in TOML as the library reads a configuration. Other tests run the snippets in
+//! Python (python/tests/test_examples.py, ros/tests/test_node.py), and the snippets of docs/remote.md in Rust and
+//! Python (serve/tests/network/snippets.rs, python/tests/test_remote_serve.py). `LANGUAGES` names the tests of the
 //! blocks that are not code.
 
 #[allow(dead_code)]

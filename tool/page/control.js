@@ -279,7 +279,7 @@ export class Control {
     // A push that was refused does not act, so its button does not stay pressed.
     if (push && !done) releaseAll();
     if (!this.message || this.stopping) return;
-    // The end of a refused push follows at once, and must not hide why the push was refused.
+    // After a refused push, the page sends a push of 0. Its answer must not hide why the first push was refused.
     const refusal = this.message.classList.contains("refused") && this.message.textContent;
     if (refusal && done && push?.every((part) => part === 0)) return;
     this.message.textContent = text;

@@ -6,8 +6,8 @@ import { Matrix3 } from "./vendor/three.js";
 const SHORTEST = 0.12;
 const LONGEST = 5;
 
-/// Returns the matrix that turns the unit sphere into the compliance ellipsoid of `stiffness`, rows in N/cm:
-/// where the tip goes under a force of `newton` in any direction.
+/// Returns the matrix that turns the unit sphere into the compliance ellipsoid of `stiffness` (rows, N/cm). The
+/// ellipsoid shows where the tip goes under a force of `newton`, N, in any direction.
 export function compliance(stiffness, newton) {
   const { values, vectors } = eigen(stiffness);
   const matrix = new Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0);

@@ -1,4 +1,4 @@
-// The hand: palm, fingers, and on each fingertip the ellipsoid of its stiffness and the arrow of its force.
+// The hand: the palm, the fingers, and on each fingertip the ellipsoid of its compliance and the arrow of its force.
 
 import { Group } from "./vendor/three.js";
 import { Finger3d } from "./finger3d.js";
@@ -16,7 +16,7 @@ export class Hand3d {
     });
   }
 
-  /// Shows the fingers at `time`. `samples` and `states` are by finger. Returns whether there are samples.
+  /// Shows the fingers at `time`. `samples` and `states` are maps by finger number. Returns whether there are samples.
   show(samples, states, time) {
     let any = false;
     for (const [number, finger] of this.fingers) {

@@ -18,7 +18,7 @@ import { paint, solid } from "./shapes.js";
 import { colour, onColours } from "./theme.js";
 
 const TABLE_RADIUS = 13;
-/// In each picture, the object goes this part of the way to a new state. States arrive 20 times a second.
+/// In each picture, the object goes this part of the remaining way to the newest state. 20 states arrive per second.
 const SMOOTHING = 0.3;
 
 /// Returns lines on the surface, which show how the object turns: the edges of a box, three circles around a ball.

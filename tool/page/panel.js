@@ -123,7 +123,7 @@ export class Panel {
       element(
         "div",
         "column",
-        element("h3", "", "Joints ", element("small", "", "°, within limits")),
+        element("h3", "", "Joints ", element("small", "", "°, bars from limit to limit")),
         ...this.joints.map((bar) => bar.row),
         element("h3", "", "Kx ", element("small", "", "N/cm")),
         element("table", "matrix", element("tbody", "", ...rows)),

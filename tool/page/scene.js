@@ -26,7 +26,7 @@ const FIRST_VIEW = new Vector3(21, -25, 14);
 /// Below this number of frames per second, the view reduces its quality step by step: fewer pixels, no shadows.
 const ENOUGH = 45;
 
-/// Returns the ends of the segments of circles that are `step` apart, and of a cross.
+/// Returns a cross, and circles whose radii are `step` apart, as line segments: two end points for each segment.
 function rings(step, last) {
   const points = [-1, 1]
     .flatMap((side) => [new Vector3(0, 0, 0), new Vector3(side * last, 0, 0)])

@@ -81,8 +81,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                     format!("{error}. {instructions}").into()
                 }
             })?;
-            // A second zeroing measures the errors of zeros that the first zeroing has already corrected. So only the
-            // first result is reported.
+            // A zeroing reports the errors that the joint angles had before it. Before the second zeroing, the first
+            // one has already corrected them. So of all zeroings, `measured` gets only the errors of the first.
             if !tasks[..done].contains(&task) {
                 calibrated.measured.extend(Measured::all(&found));
             }

@@ -144,7 +144,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::SUCCESS)
 }
 
-/// Returns the largest mass that a tendon of this largest tension, N, can hold, rounded down to 0.01 kg.
+/// Returns the largest mass that may hang on a tendon, kg, rounded down to 0.01 kg. `maximum` is the largest permitted
+/// tension, N.
 fn heaviest_mass(maximum: f64) -> f64 {
     (maximum / GRAVITY * 100.0).floor() / 100.0
 }

@@ -55,14 +55,15 @@ pub struct Arguments {
     width: u32,
 }
 
-/// A curve has a gap where the controller has not run for this time, s. A busy servo skips single periods.
+/// A curve has a gap where the controller has not run for this time, s. Single periods, which a busy servo skips, make
+/// no gap.
 const LONGEST_PAUSE: f64 = 0.05;
 
-/// The error of a plot of cycles if there are none.
+/// The error if a kind of plot needs cycles, and the selection has none.
 const NO_CYCLE: &str = "the selected part of the recording has no cycle of the selected fingers: select another \
     part or other fingers (--from, --to, --finger), or make another recording";
 
-/// The error of a plot of the controller's values if there are none.
+/// The error if a kind of plot needs values of the controller, and the selection has none.
 const NOT_CONTROLLED: &str = "the selected part of the recording has no cycle in which the controller of this finger \
     ran: select another part or finger (--from, --to, --finger), or record while the finger runs";
 

@@ -51,7 +51,7 @@ pub struct Arguments {
     from_black_box: Option<PathBuf>,
 }
 
-/// Parses a positive number. A billion seconds are 31 years, and a billion MB more than any disk.
+/// Parses a positive number of at most 1e9. A billion seconds are 31 years, and no disk holds a billion MB.
 fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "it is not a number".to_owned())?;
     if number > 0.0 && number <= 1e9 { Ok(number) } else { Err("it must be above 0, and at most 1e9".into()) }
@@ -161,7 +161,7 @@ fn copy(entries: impl Iterator<Item = Result<Entry, Failure>>, mut files: Files)
     let (mut first, mut last) = (None, 0);
     for entry in entries {
         let entry = entry?;
-        // A black box has no gaps.
+        // The other items mark lost cycles. A black box has no such items.
         let Item::Message(message) = &entry.item else { continue };
         if matches!(message, Message::Cycle { .. }) {
             first.get_or_insert(entry.time);

@@ -45,7 +45,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus, Failure> {
     Ok(if report.pass { ExitStatus::SUCCESS } else { ExitStatus::FAILURE })
 }
 
-/// Whether a file begins as an MCAP file does. The reader of black boxes reports files that cannot be read.
+/// Whether a file begins as an MCAP file does. Returns false for a file that cannot be read: the reader of black boxes
+/// then reports the error.
 fn is_mcap(path: &Path) -> bool {
     let mut begin = [0; MCAP_MAGIC.len()];
     let opened = open_regular_file(path, u64::MAX);

@@ -29,7 +29,7 @@ const LARGEST_COSTS: u64 = 1 << 16;
 /// the configuration. With --costs they are read from a TOML file with the keys `wake_up`, `write` (the commands of one
 /// port), `read` (receive and decode one reply) and `compute` (one finger), all in us. The measured computing time
 /// includes 16 reflexes of each finger, of which one reacts in every cycle. Lines are as configured; a simulated port
-/// counts as a serial line of its baud rate. The results hold for any phases of the threads.
+/// counts as a serial line of its baud rate. The results hold for any offsets between the periods of the threads.
 ///
 /// Exit status: 0 if every deadline is met at the configured rate, 1 if one may be missed or the
 /// computation fails, 2 for wrong usage.

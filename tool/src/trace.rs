@@ -17,7 +17,7 @@ use sun2xp::model::{Counted, Part, ShownPath};
 use sun2xp::simulated::ObjectState;
 use sun2xp::telemetry::{Description, Message, Sample, View};
 
-/// Steps of the progress.
+/// Progress is counted in thousandths of the file.
 const THOUSANDTHS: u64 = 1000;
 
 /// What a recording contains, in chronological order for each finger.

@@ -74,7 +74,7 @@ pub fn serve(listener: TcpListener, wanted: Wanted, control: Option<Control>) ->
     Ok(runtime.block_on(server.run(listener)).map_err(failed)?)
 }
 
-/// Returns the address of the page. Browsers send what follows # to no server, so the token is in no log.
+/// Returns the address of the page. Browsers do not send the part after # to a server, so the token is in no log.
 fn url(bound: SocketAddr, token: Option<&str>) -> String {
     let host = match bound.ip() {
         ip if ip.is_unspecified() => own_address().or_else(access::machine).unwrap_or_else(|| "localhost".into()),
@@ -85,8 +85,8 @@ fn url(bound: SocketAddr, token: Option<&str>) -> String {
     format!("http://{host}:{}/{token}", bound.port())
 }
 
-/// Returns the address that this machine has for others: the sender's address of a datagram to a distant network. No
-/// datagram is sent.
+/// Returns the address at which other machines reach this machine: the source address that a datagram to a distant
+/// network would have. No datagram is sent.
 fn own_address() -> Option<String> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
     socket.connect(DISTANT).ok()?;

@@ -112,7 +112,7 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
         );
         assert!(!said(&output).contains("\\n"), "{}", said(&output));
         assert_eq!(said(&output).contains("Press Enter"), !input.is_empty());
-        // The command with which to continue keeps the option.
+        // The command with which to continue has the option --yes if this run had it.
         assert_eq!(said(&output).contains(" --yes --finger 2 --zero"), input.is_empty(), "{}", said(&output));
         assert!(desk.unchanged());
     }

@@ -44,7 +44,8 @@ fn the_schedule_of_a_hand_that_meets_its_deadlines_is_printed() {
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
-    // A pipe receives neither Markdown nor escape sequences, and nothing about virtual machines: the costs are given.
+    // A pipe receives neither Markdown nor escape sequences. The text does not mention virtual machines, because the
+    // costs are given.
     assert!(!text.contains('|') && !text.contains('\u{1b}') && !text.contains("virtual"), "{text}");
 }
 

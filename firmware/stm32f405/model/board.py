@@ -1,6 +1,6 @@
 """Runs the firmware image of the board on an emulated Cortex-M4 (Unicorn), with models of the peripheral registers.
 
-Time is the computed number of cycles."""
+Time is the number of processor cycles that the model computes."""
 
 import struct
 import zlib
@@ -20,7 +20,7 @@ ENTRY, EXIT = 12, 10
 CONDITIONAL = 0x0600FC00
 # Exception handlers return to this address.
 RETURN = FLASH + 0xFFFF0
-# Flash has five wait states at 168 MHz, for lines of 16 bytes.
+# At 168 MHz, the flash needs five wait states to read a line of 16 bytes.
 LINE, WAIT_STATES, CACHE_LINES = 16, 5, 64
 
 
@@ -66,7 +66,7 @@ class Board:
         self.registers.write(base + offset, value)
 
     def block(self, uc, address, size, data):
-        """Called before each run of instructions without a branch. Interrupts are taken only here."""
+        """Called before each basic block. Interrupts are taken only here."""
         registers = self.registers
         while self.arrivals and self.arrivals[0][0] <= registers.now:
             registers.receive(self.arrivals.pop(0)[1])

@@ -85,7 +85,7 @@ def reports_its_sensors():
 
 def counts_while_the_line_carries_noise():
     board = configured()
-    # Every delimiter begins a sample. The 16 bits of TIM3 wrap.
+    # A zero byte is a delimiter, and every delimiter begins a sample. The 16 bits of TIM3 wrap.
     for turned in range(0, 80001, 5000):
         board.registers.values[reg.TIM3 + 0x24] = turned & 0xFFFF
         board.send(bytes(1), 1_000_000)

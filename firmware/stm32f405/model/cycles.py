@@ -42,7 +42,7 @@ class Program:
             if found and not found.group(3).startswith("."):
                 name = found.group(3).split(".")[0]
                 size = len(found.group(2).replace(" ", "")) // 2
-                # Whether the instruction loads a constant beside the code, and whether it is a load of any kind.
+                # Whether the instruction loads a constant that is stored beside the code, and whether it loads at all.
                 loads = ("[pc" in found.group(4), name.startswith(("ldr", "ldm", "pop", "tb")))
                 self.instructions[int(found.group(1), 16)] = (size, cost(name, found.group(4)), loads)
         self.symbols = {}
@@ -52,7 +52,8 @@ class Program:
                 self.symbols[words[2]] = int(words[0], 16)
 
     def block(self, begin, size):
-        """Cycles and number of the instructions from `begin` on, their loads of constants, and all of their loads."""
+        """Returns four sums over the `size` bytes of code from `begin` on: cycles, instructions, loads of constants,
+        and loads of any kind."""
         cycles = count = constants = loads = 0
         address = begin
         while address < begin + size:

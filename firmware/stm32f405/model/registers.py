@@ -9,9 +9,10 @@ SR_RXNE, SR_TXE = 1 << 5, 1 << 7
 CR1_RXNEIE, CR1_TXEIE = 1 << 5, 1 << 7
 MOE = 1 << 15
 
-# Converter: BUSY rises within 45 ns, and falls after at most 4.15 us (an AD7606 with 8 channels, the slowest).
+# Times of the converter, cycles. BUSY rises within 45 ns, and falls after at most 4.15 us. This is the limit of the
+# AD7606 with 8 channels, the slowest variant.
 BUSY_BEGINS, BUSY_ENDS = 8, 8 + int(4.15 * MEGAHERTZ)
-# 16 bits at 10.5 MHz, and the synchronisation with the bus.
+# Duration of an SPI word, cycles: 16 bits at 10.5 MHz, and the synchronisation with the bus.
 SPI_WORD = 16 * 16 + 12
 
 

@@ -11,7 +11,7 @@ import sys
 from board import Board, command, configure
 from registers import GPIOB, BSRR, MEGAHERTZ, TIM2, TIM3, TIM4, TIM5
 
-# docs/board-protocol.md, us.
+# Longest permitted time from a Command to its Reply, us (docs/board-protocol.md).
 ALLOWED = 100
 # Least ratio of the allowed time to the computed time.
 MARGIN = 3
@@ -30,7 +30,8 @@ VALUES = [
 
 
 class Bench:
-    """A running board, either with the cache of the flash (`cached`) or without it, for the upper bound (see Board)."""
+    """A running board. With `cached`, the flash has its cache. Without `cached`, the times are upper bounds (see
+    Board)."""
 
     def __init__(self, cached, constants=(23400,) * 4):
         self.board = Board(sys.argv[1], open(sys.argv[2], "rb").read(), cached)
@@ -94,7 +95,7 @@ def one_handler(cached):
 
 
 def sampling_skew(cached):
-    """From the edge that samples the gauges to the read of the last encoder."""
+    """The time from the edge that samples the gauges to the read of the last encoder."""
     bench = Bench(cached)
     reads, read = [], bench.registers.read
 
@@ -111,14 +112,14 @@ def sampling_skew(cached):
 
 
 def longest_loop(cached):
-    """Between two feeds of the watchdog, with a burst of 15 Commands at the full rate."""
+    """The longest time between two feeds of the watchdog, during a burst of 15 Commands at the full rate."""
     bench = Bench(cached)
     bench.registers.longest_unfed = 0
     bench.reply_time(VALUES[1][0], 0, followers=14)
     return bench.registers.longest_unfed, 0
 
 
-# The longest computed time and the largest upper bound that are permitted, us.
+# Each pair contains the longest permitted computed time and the largest permitted upper bound, us.
 QUICK, IN_TIME, NO_LIMIT = (ALLOWED / MARGIN, ALLOWED), (ALLOWED, ALLOWED), (float("inf"), float("inf"))
 
 ROWS = [

@@ -1,4 +1,4 @@
-"""Runs the conversations of protocol/vectors.json with the image of the board, and then noise.
+"""Runs the firmware image on the model of the board. Sends it the conversations of protocol/vectors.json, then noise.
 
     vectors.py stm32f405.elf stm32f405.bin protocol/vectors.json"""
 

@@ -94,7 +94,7 @@ class ConfigurationError(Error):
     """A configuration that cannot be read, used or stored."""
 
 
-# OSError has an attribute errno too, whose value may be None.
+# mypy objects that the attribute errno of OSError may be None, unlike that of Error.
 class TimedOut(Error, TimeoutError):  # type: ignore[misc]
     """A time limit has expired, for example before a finger arrived or settled."""
 

@@ -13,7 +13,8 @@ def main() -> int:
     """Runs the tool with the arguments of the process."""
     # Python's own handler would only note SIGINT, and raise KeyboardInterrupt after the tool has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # `sun2xp serve` searches for the program sun2xp-serve in the folder of this script, not in that of the interpreter.
+    # `sun2xp serve` searches for the program sun2xp-serve in the folder of the installed script `sun2xp`, which is
+    # argv[0], and not in the folder of the interpreter.
     return _sun2xp.run_tool(["sun2xp", *sys.argv[1:]], os.path.abspath(sys.argv[0]))
 
 

@@ -59,7 +59,7 @@ pub enum AdmissionError {
         /// The bound, N/cm.
         bound: f64,
     },
-    /// Kx is not symmetric.
+    /// Kx is not symmetric: `Kx[row][column]` and `Kx[column][row]` differ.
     #[error(
         "Kx of finger {finger} is not symmetric: Kx[{row}][{column}] and Kx[{column}][{row}] differ by \
          {difference:.3e} N/cm, more than a thousandth of its largest entry. Send a symmetric Kx"

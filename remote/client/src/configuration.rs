@@ -101,7 +101,8 @@ impl RemoteConfiguration {
         Ok(Some(configuration))
     }
 
-    /// Checks the endpoint, `stale_ms`, and whether the keys fit together. The error contains the key and the reason.
+    /// Checks the endpoint, `stale_ms`, and whether the configuration keys fit together. The error contains the
+    /// configuration key and the reason.
     fn check(&self) -> Result<(), (&'static str, String)> {
         let (protocol, host) = self.endpoint.split_once('/').unwrap_or(("", &self.endpoint));
         let (host, port) = host.rsplit_once(':').unwrap_or((host, ""));

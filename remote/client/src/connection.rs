@@ -58,8 +58,8 @@ fn session_configuration(configuration: &RemoteConfiguration) -> zenoh::Result<C
     Ok(config)
 }
 
-/// Returns the text of an error. The location in Zenoh's sources at its end is left out, because a planner cannot use
-/// it.
+/// Returns the text of an error. The text of Zenoh ends with a location in Zenoh's sources. This location is left out,
+/// because a planner cannot use it.
 pub(crate) fn short(error: &zenoh::Error) -> String {
     let text = error.to_string();
     text.split(" at /").next().unwrap_or_default().trim_end_matches(['.', '!']).into()
@@ -84,7 +84,8 @@ fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
                     .into()
             }
             Ok(_) => {
-                "a program answers there, but it is not `sun2xp serve`, or it needs TLS: check the port, or use `tls/`"
+                "a program answers there, but it is not `sun2xp serve`, or it needs TLS: check the port, or begin \
+                 remote.endpoint with `tls/`"
                     .into()
             }
         },

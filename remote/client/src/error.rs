@@ -45,7 +45,8 @@ pub enum RemoteError {
         finger: Finger,
         /// The number of the fault.
         fault: u16,
-        /// The name of the fault, with the affected part and its value; empty if no Status had them yet.
+        /// The name of the fault, the affected part and the value of the fault. Empty if the newest Status does not
+        /// describe this fault.
         name: String,
     },
     /// The finger does not act as a spring now.

@@ -73,7 +73,7 @@ impl RemoteHand {
     ///
     /// # Errors
     /// Returns an error if the hand was owned and the server did not confirm the release. Then the hand goes to its end
-    /// state by itself, because no Targets arrive.
+    /// state by itself, because the server receives no more Target messages.
     pub fn release(&self) -> Result<(), RemoteError> {
         self.link.release()
     }
@@ -82,7 +82,7 @@ impl RemoteHand {
     ///
     /// # Errors
     /// Returns an error if the hand was owned and the server did not confirm the release. Then the hand goes to its end
-    /// state by itself, because no Targets arrive.
+    /// state by itself, because the server receives no more Target messages.
     pub fn close(self) -> Result<(), RemoteError> {
         self.link.release()
     }
@@ -116,7 +116,7 @@ impl Drop for RemoteHand {
             std::mem::forget(self.link.clone());
             return;
         }
-        // Without an answer, the hand goes to its end state because no Targets arrive.
+        // Without an answer, the hand goes to its end state, because the server receives no more Target messages.
         let _ = self.link.release();
     }
 }

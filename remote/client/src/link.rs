@@ -177,8 +177,9 @@ impl Link {
         Ok(())
     }
 
-    /// Waits for a State that shows what the fingers do after this Answer. The newest State may be older, and show that
-    /// a finger still recovers. If no State comes, the calls that need one say so.
+    /// Waits until a State arrives that is newer than this Answer, for at most [`NEXT_STATE`]. An older State may show
+    /// that a finger still recovers. If no State arrives, this function returns no error, because the calls that need
+    /// a recent State check its age.
     pub fn await_state_after(&self, answer: &Answer) {
         let older = |exchange: &mut Exchange| !exchange.view.is_newer_than(answer.time);
         drop(self.shared.changed.wait_timeout_while(self.shared.lock(), NEXT_STATE, older));

@@ -88,14 +88,14 @@ impl Outbox {
         }
     }
 
-    /// Holds the Targets of this epoch back if `held` is set, until a call in which it is not set. Changes that are put
-    /// meanwhile wait.
+    /// If `held` is true, holds back the Targets of this epoch until a call with `held` false. Changes that are put in
+    /// the meantime wait.
     pub fn hold(&mut self, held: bool) {
         self.held = held;
     }
 
     /// Notes the time and the owner of a State that was received. `continued` is false if the server was started again
-    /// since the State before.
+    /// since the previous State.
     pub fn heard(&mut self, time: u64, owner: u64, continued: bool) {
         if let Ok(Ownership { number, since, .. }) = self.ownership {
             // A State that is not later than the Answer may show an earlier owner. It may also be the first State of a
@@ -121,8 +121,8 @@ impl Outbox {
         self.slots[finger.index()].is_applied()
     }
 
-    /// Notes that the server has refused a Target. Values of it that no record has confirmed are not put into a new
-    /// Target.
+    /// Notes that the server has refused a Target. The next new part of a finger omits the values of this Target that
+    /// no record has confirmed.
     pub fn refused(&mut self, answer: &Answer) {
         self.seen = self.seen.max(answer.time);
         if self.ownership.is_ok_and(|ownership| ownership.epoch == answer.epoch) {

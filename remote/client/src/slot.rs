@@ -4,7 +4,7 @@ use crate::change::Change;
 use std::collections::VecDeque;
 use sun2xp_remote_protocol::{Finger, Part, Place};
 
-/// What is sent to one finger: the part that Targets contain, and the changes that are not in this part yet.
+/// What is sent to one finger: the part that Targets repeat, and the changes that this part does not contain yet.
 #[derive(Clone, Debug, Default)]
 pub struct Slot {
     /// Changes that no Target has yet.

@@ -11,7 +11,8 @@ pub struct RemoteStatistics {
     pub states: u64,
     /// States that were lost on the way.
     pub lost_states: u64,
-    /// Cycles of which the server has sent no record, because it was late.
+    /// Cycles of which the server has sent no record, because the server was late or one of their values was not
+    /// finite.
     pub missing_cycles: u64,
     /// Messages that are not of this version of the protocol, or malformed.
     pub malformed: u64,

@@ -64,8 +64,8 @@ pub(crate) mod tests {
     #[test]
     fn a_server_that_was_started_again_is_measured_anew() {
         assert_eq!(measured(&[(9000, 9), (1, 20), (1001, 21)]), 1000.0);
-        // After the restart, the cycle has a higher number than in the first record, but a lower one than in the
-        // record before.
+        // After the restart, the cycle number is higher than that of the first record, but lower than that of the
+        // previous record.
         assert_eq!(measured(&[(5, 1), (9005, 10), (3000, 20), (4000, 21)]), 1000.0);
         // The machine of the server was started again.
         assert_eq!(measured(&[(9000, 90), (9500, 3), (10_500, 4)]), 1000.0);

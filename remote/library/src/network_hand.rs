@@ -58,7 +58,7 @@ impl NetworkHand {
         seen: u32,
     ) -> Result<Arc<dyn RemoteHand>, RemoteRefusal> {
         let own = Arc::new(Self { connection: RwLock::new(None), configuration: configuration.clone() });
-        // A stop that is due at once waits until the connection is there.
+        // The thread of `StopCalls` may stop the hand at once. This lock makes it wait until the connection is stored.
         let mut place = own.connection.write().unwrap_or_else(PoisonError::into_inner);
         let _stop_calls = StopCalls::watch(Arc::downgrade(&own), seen)?;
         let events = hand.events();

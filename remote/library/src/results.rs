@@ -1,5 +1,5 @@
 //! Converts what the server reports into the structs of `sun2xp.h`. A value that the server does not report is NaN, or
-//! 0 in an integer. The values of a fault and of a warning are 0 too.
+//! 0 in an integer. Only `value` and `warning_value` of `sun2xp_fault` are 0 instead of NaN.
 
 use sun2xp::capi::{sun2xp_event, sun2xp_fault, sun2xp_limits, sun2xp_status, sun2xp_tip};
 use sun2xp_remote_client::{Event, FingerStatus, Record, Stage, Status};

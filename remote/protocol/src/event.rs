@@ -15,7 +15,7 @@ pub struct Event {
     /// The number of the part that the kind concerns: joint 0 to 2, or tendon, motor, gauge or encoder 1 to 4. It is 0
     /// if the kind concerns no such part.
     pub part: u8,
-    /// The kind: the number of docs/events.md, from 1.
+    /// The number of the kind in docs/events.md, from 1.
     pub kind: u16,
     /// The number of this Event since the server's start, from 1. A gap shows lost events.
     pub number: u64,
@@ -23,7 +23,7 @@ pub struct Event {
     pub cycle: u64,
     /// The beginning of the cycle, ns, server's clock.
     pub begin: u64,
-    /// The values that docs/events.md gives to the kind. A value may be NaN.
+    /// The values that docs/events.md lists for the kind. A value may be NaN.
     pub values: [f64; 4],
 }
 

@@ -17,8 +17,8 @@ impl FaultText {
         Self(text[..end.unwrap_or(0)].into())
     }
 
-    /// Returns the name of the fault, with the affected part and its value: they come before the first colon. What
-    /// comes after it may end in the middle of a word. Returns an empty text if there is no colon.
+    /// Returns the text before the first colon: the name of the fault, the affected part, and the value of the fault.
+    /// The text after the colon may end in the middle of a word. Returns an empty text if there is no colon.
     #[must_use]
     pub fn fault(&self) -> &str {
         self.0.split_once(": ").map_or("", |(fault, _)| fault)

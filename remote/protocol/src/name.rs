@@ -1,5 +1,5 @@
 //! The names of hands and clients. A name is a part of Zenoh keys, so it must not contain a character that has a
-//! meaning in them.
+//! special meaning in a key.
 
 use std::fmt;
 use std::str::FromStr;
@@ -18,14 +18,14 @@ pub enum NameError {
         /// The largest length.
         most: usize,
     },
-    /// The name has a character that names do not have.
+    /// The name has a character that is not permitted.
     #[error("the name has the character {character:?}: the name of a {what} has only {allowed}")]
     Character {
         /// What has the name, such as `hand` or `client`.
         what: &'static str,
         /// The first such character.
         character: char,
-        /// The characters that names have.
+        /// The permitted characters.
         allowed: &'static str,
     },
 }

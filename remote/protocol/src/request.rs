@@ -14,7 +14,7 @@ const RECOVER: u8 = 2;
 pub struct Request {
     /// What is requested. It must agree with the action in the Zenoh key of the request.
     pub action: Action,
-    /// The finger; none for every finger. Calibrate and identify need one, and acquire and release have none.
+    /// The finger. `None` means every finger. Calibrate and identify need a finger. Acquire and release need `None`.
     pub finger: Option<Finger>,
     /// Whether to take the hand over from another owner. Only with acquire.
     pub take_over: bool,

@@ -1,4 +1,4 @@
-//! State, type 2: the cycles of the fingers since the State before.
+//! State, message type 2: the cycles of the fingers since the previous State.
 
 use crate::bytes::{Bytes, Written};
 use crate::error::{FieldError, Reason, within};
@@ -10,7 +10,7 @@ pub const MOST_RECORDS: usize = 300;
 const FIXED: usize = 32;
 const KIND: MessageKind = MessageKind::State;
 
-/// The cycles of the fingers since the State before. A finger that has stopped has one record in each State, with its
+/// The cycles of the fingers since the previous State. A finger that has stopped has one record in each State, with its
 /// newest cycle. Cycles can be absent: `missing` is their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
@@ -48,7 +48,7 @@ impl State {
         Ok(state)
     }
 
-    /// Checks the order of the cycles of each finger.
+    /// Checks the number of records, and the order of the cycles of each finger.
     fn check_order(&self) -> Result<(), FieldError> {
         within("number of records", self.records.len() as u64, 0, MOST_RECORDS as u64)?;
         let mut newest = [None; FINGERS];

@@ -23,7 +23,8 @@ pub struct Counts {
     pub late: u64,
     /// Targets that the hand did not admit.
     pub refused: u64,
-    /// How often the fingers were caught because the validity of the newest Target had ended.
+    /// How often the fingers were caught (held softly in their poses), because the validity of the newest Target had
+    /// ended.
     pub caught: u64,
     /// How often the fingers went to their end state because the owner fell silent.
     pub ended: u64,

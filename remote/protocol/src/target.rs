@@ -16,15 +16,16 @@ const KIND: MessageKind = MessageKind::Target;
 /// The set points that are in force for the fingers of a hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// How long the Target is valid, ms: 1 to [`LONGEST_VALIDITY_MS`]. The server uses at most its `catch_ms`.
+    /// How long the Target is valid, ms: 1 to [`LONGEST_VALIDITY_MS`]. The server limits this time to its
+    /// `catch_ms`.
     pub validity_ms: u32,
     /// The epoch of the owner.
     pub epoch: u64,
     /// The sequence number. It is higher than the sequence number of every earlier Target of this epoch.
     pub sequence: u64,
-    /// Time sent, by any clock of the sender.
+    /// The time at which the Target was sent, on any clock of the sender.
     pub sent: u64,
-    /// The time of the newest State or Answer that the sender has received, server's clock.
+    /// The time, on the server's clock, of the newest State or Answer that the sender has received.
     pub seen: u64,
     /// The set points, in rising order of their fingers. Without parts, the Target only says that the owner
     /// is alive.

@@ -1,4 +1,4 @@
-//! A server with the simulated hand in this process, and clients in others.
+//! What the benchmarks share: a server with a simulated hand in this process, and the configuration of its clients.
 
 #![allow(dead_code)]
 
@@ -113,7 +113,7 @@ pub fn pose_of(number: u32) -> [f64; 3] {
     [0.1, 0.5, 0.9 + 1e-6 * f64::from(number % 100_000)]
 }
 
-/// Returns the percentile: at least the fraction `part` of `values` is not larger than it.
+/// Returns the percentile: the smallest value that at least the fraction `part` of `values` does not exceed.
 pub fn percentile(values: &[f64], part: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             wait_for_end();
         }
         Engine::ZenohTcp | Engine::ZenohTls => {
-            // Zenoh does not report the port that the kernel chooses, so it gets one that was free.
+            // Zenoh does not report a port that the kernel chooses, so Zenoh gets the port that `listener` had.
             drop(listener);
             let _server = zenoh_link::serve(port, encrypted.then_some(certificates.as_path()))?;
             println!("{port}");
@@ -45,7 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Starts the server of an engine. Returns its process, which must live as long as the server, and its port.
+/// Starts the server of an engine. Returns the server's process and port. The server ends when the `Child` is dropped.
 pub fn start(engine: Engine, certificates: &Path) -> Result<(Child, u16), Failure> {
     let name = clap::ValueEnum::to_possible_value(&engine).ok_or("the engine has no name")?;
     let mut child = Child::start(&[name.get_name().as_ref(), certificates.as_os_str()], "echo")?;

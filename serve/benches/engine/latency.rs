@@ -6,8 +6,8 @@ use crate::{Failure, LENGTH, certificates, echo, load};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Largest permitted ratio, under load, of the 99th percentile of an engine with Zenoh to that of the engine without
-/// Zenoh that protects the messages in the same way.
+/// Goal under load: the 99th percentile of an engine with Zenoh is at most this multiple of the 99th percentile of its
+/// [`Engine::baseline`], the engine without Zenoh that protects the messages in the same way.
 const GOAL: f64 = 3.0;
 
 /// Measures the round trip of a message of 200 bytes.
@@ -80,7 +80,7 @@ fn round_trips(arguments: &Arguments, link: &mut dyn Link) -> Result<Vec<u64>, F
         let sent = Instant::now();
         link.round_trip(&message)?;
         times.push(sent.elapsed().as_nanos() as u64);
-        // After a late answer, the messages that were missed are not made up for.
+        // After a late answer, the messages that were due in the meantime are skipped.
         next = (next + period).max(Instant::now());
     }
     Ok(times)

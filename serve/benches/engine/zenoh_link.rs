@@ -10,7 +10,7 @@ use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Config, Session, Wait};
 
-/// Where the client publishes, and where the server does.
+/// The keys under which the client and the server publish.
 const THERE: &str = "engine/there";
 const BACK: &str = "engine/back";
 
@@ -31,7 +31,7 @@ pub fn serve(port: u16, certificates: Option<&Path>) -> Result<Server, Failure> 
         .declare_subscriber(THERE)
         .callback(move |sample| {
             if sample.payload().to_bytes().first() == Some(&ANSWER) {
-                // The session is closing if this fails, and then nobody waits.
+                // The put fails only while the session is closing. Nobody waits for the answer then.
                 let _ = back.put(sample.payload().clone()).wait();
             }
         })

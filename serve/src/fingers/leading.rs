@@ -30,7 +30,8 @@ impl LedPlace {
 
 impl Fingers {
     /// Returns the goal of a finger that is about to get a command. If the owner has not commanded a place for the
-    /// finger, the set point in force is kept. A finger that was caught returns to the set point from before the catch.
+    /// finger, the set point in force is kept. A finger that was caught (see [`crate::silence`]) returns to the set
+    /// point from before the catch.
     pub(super) fn keeping(&self, number: i32, goal: Goal, report: &FingerReport) -> Result<Goal, HandError> {
         let mut keeping = goal;
         if goal.destination == Destination::None {
@@ -90,9 +91,9 @@ impl Fingers {
     }
 
     /// Returns the joint angles, rad, that the hand uses if `joints` are sent: they are within the limits. Returns none
-    /// if the hand refuses `joints`. The check is the hand's own. Angles that it refuses are sent to the hand without
-    /// the bound of the lead, because the hand refuses them with the reason. If this check were stricter than the
-    /// hand's, the hand would follow some of these angles.
+    /// if the hand refuses `joints`. In that case the caller sends `joints` to the hand without the bound of the lead,
+    /// and the hand refuses them with the reason. This function uses the check of the hand itself. With a stricter
+    /// check, the hand would accept some of the angles that are sent without the bound.
     pub(super) fn within_limits(
         &self,
         finger: FingerNumber,

@@ -47,7 +47,8 @@ pub(super) fn run<R: Reply>(
     let (of_thread, of_reply) = (shared.clone(), kept.clone());
     let started = spawn("sun2xp request", Priority::default(), move |_| {
         let answer = body(&of_thread);
-        // A client that has the Answer may send the next request at once.
+        // `busy` is cleared before the Answer is sent, because a client that has the Answer may send the next request
+        // at once.
         of_thread.busy.store(false, Ordering::Release);
         let reply = of_reply.lock().take();
         if let Some(reply) = reply {

@@ -8,7 +8,8 @@ use sun2xp_remote_protocol::{
 };
 use zenoh::{Session, Wait};
 
-/// The files of TLS: authority, and the certificate and key with this name.
+/// The TLS files of a client, in `folder`: the authority's certificate is the file `authority`. The client's
+/// certificate and key are `name`.pem and `name`.key.
 #[derive(Clone, Copy)]
 pub struct Certificate<'a> {
     pub folder: &'a Path,

@@ -39,7 +39,7 @@ impl Rig {
         Self::from_text(&text, Path::new("."), endpoint)
     }
 
-    /// Starts a server with these tables. Paths begin in `folder`.
+    /// Starts a server with the tables in `text`. Relative paths in `text` start at `folder`.
     pub fn from_text(text: &str, folder: &Path, endpoint: String) -> Self {
         Self::with_hand(Configuration::default(), text, folder, endpoint)
     }

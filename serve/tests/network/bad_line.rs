@@ -20,9 +20,10 @@ const RAMP_TIME: Duration = Duration::from_secs(30);
 /// Longest time until the finger is at the beginning of the ramp.
 const BEGINS: Duration = Duration::from_secs(10);
 
-/// Largest velocity of a finger, rad/s. The ramp has 0.1 rad/s. A pause of the line lasts at most 1 s, because the hand
-/// then goes to its end state. After the pause, the next set point is at most 0.1 rad ahead of the finger. The finger
-/// catches up as after any step of a local planner: its velocity is less than 30/s times the step.
+/// Bound of the velocity of a finger, rad/s. The ramp moves at 0.1 rad/s. A pause of the line can last 1 s before the
+/// hand goes to its end state, after which the velocity is not measured. So after a pause, the next set point is at
+/// most 0.1 rad ahead of the finger. The finger then moves as after any step of a local planner: its velocity is less
+/// than 30/s times the step.
 const LARGEST_VELOCITY: f64 = 3.1;
 
 /// While the machine pauses the simulated finger, the set point moves on, and the finger then makes a step. A pause
@@ -42,7 +43,7 @@ struct Seen {
     velocity: f64,
     /// The times, ns, and the joint angles, rad, of the cycles in the newest window.
     recent: VecDeque<(u64, [f64; 3])>,
-    /// How often the finger was caught.
+    /// How often the finger was caught: held softly, because the newest Target was too old.
     caught: usize,
     /// Whether the last set point of the ramp is in force.
     arrived: bool,

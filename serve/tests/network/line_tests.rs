@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// Number of packets. With n packets and the loss p, the standard deviation of the lost fraction is sqrt(p(1-p)/n).
 const PACKETS: u32 = 4000;
 
-/// Longest time in which a packet passes a line without delay. The machine may be busy.
+/// Longest time that a packet takes through a line that adds no delay, even on a busy machine.
 const PASSES: Duration = Duration::from_secs(2);
 
 /// The packets that have arrived by `now`, as the numbers that they contain.

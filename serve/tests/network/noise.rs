@@ -20,7 +20,8 @@ const KX: usize = PART + 32;
 /// A source of payloads. Equal seeds give equal payloads.
 pub struct Noise {
     random: Random,
-    /// Command number that no good Target of the test has.
+    /// The command number that [`Noise::good`] used last. The Targets that a test sends to be taken have smaller
+    /// numbers.
     command: u32,
 }
 
@@ -46,7 +47,7 @@ impl Noise {
         (0..length).map(|_| self.random.bits() as u8).collect()
     }
 
-    /// Noise with type, version and a number of parts.
+    /// A correct type and version, a number of parts, and then noise.
     fn with_a_good_beginning(&mut self) -> Vec<u8> {
         [vec![1, 1, self.random.below(5) as u8, 0], self.bytes(500)].concat()
     }
@@ -88,7 +89,8 @@ impl Noise {
         payload
     }
 
-    /// A Target with the epoch in force and one field that the protocol or the hand does not allow.
+    /// A Target with the epoch in force. Either it has a field that the protocol or the hand does not allow, or its end
+    /// is missing.
     fn spoiled(&mut self, next: &Target) -> Vec<u8> {
         let mut payload = self.good(next);
         let number = |payload: &mut Vec<u8>, at: usize, value: f64| {

@@ -14,7 +14,7 @@ use sun2xp_serve::server::Server;
 /// The owner's only command, rad.
 const HELD: [f64; 3] = [0.1, 0.7, 0.8];
 
-/// Largest motion of a finger that only holds its pose, rad. The noise of its gauges and friction cause this motion.
+/// Largest motion of a finger that only holds its pose, rad. Gauge noise and friction cause this motion.
 const STILL: f64 = 0.02;
 
 /// Interval between two good Targets of the owner.

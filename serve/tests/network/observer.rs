@@ -38,7 +38,7 @@ impl Observer {
         self.messages.iter().filter_map(|message| self.view.take(message)).collect()
     }
 
-    /// Returns the number of cycles of all fingers that telemetry has lost since this observer was attached.
+    /// Returns how many cycles telemetry has lost since this observer was attached, for all fingers together.
     pub fn lost(&self) -> u64 {
         self.reader.lost().iter().sum()
     }
@@ -61,7 +61,7 @@ impl Observer {
     }
 }
 
-/// Returns whether a finger is a spring with this Kx times the unit matrix, N/cm.
+/// Returns whether the finger of this sample is a spring whose Kx is `stiffness`, N/cm, times the unit matrix.
 pub fn has_stiffness(sample: &Sample, stiffness: f64) -> bool {
     let wanted = |row: usize, column: usize| if row == column { stiffness } else { 0.0 };
     sample.stage == Stage::Running

@@ -27,7 +27,7 @@ pub enum Motion {
     Swing,
     /// Joint 1 of every finger closes in equal steps, and stays.
     Ramp,
-    /// None: it reads the hand, and does not own it.
+    /// Nothing moves. The planner reads the hand, and does not own it.
     Watch,
 }
 
@@ -65,7 +65,8 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// Starts a planner at the right end of the line, and returns when it has sent the first set point.
+    /// Starts a planner at the right end of the line. Returns when the planner has sent its first set point. With
+    /// [`Motion::Watch`], returns when the planner has connected to the hand.
     pub fn start(line: &Line, configuration: &str, motion: Motion) -> Self {
         line.right.run(|| Self::start_here(configuration, motion))
     }

@@ -1,4 +1,4 @@
-//! Who may do what, and which Targets are taken: against a server in this process, at loopback.
+//! Tests who may do what, and which Targets are taken. The server runs in this process, at a loopback address.
 
 use super::free_port::free_port;
 use super::raw::{Files, Raw, joints};
@@ -11,7 +11,7 @@ use sun2xp_serve::server::{Server, prepare};
 use sun2xp_serve::settings::{Overrides, Settings};
 use tempfile::TempDir;
 
-/// Time in which a message that is not permitted would have arrived.
+/// Time within which a message arrives if nothing blocks it.
 const ARRIVES: Duration = Duration::from_millis(300);
 
 /// Returns an endpoint at loopback where nobody listens.

@@ -15,7 +15,7 @@ pub const PROGRAM: &str = env!("CARGO_BIN_EXE_sun2xp-serve");
 /// `soft_stiffness` of the server: the Kx with which it holds a caught finger, N/cm.
 pub const SOFT: f64 = 1.0;
 
-/// A hand on one machine. Dropping it ends the server.
+/// A running server and its hand. Dropping this value ends the server.
 pub struct Served {
     process: Child,
     folder: TempDir,

@@ -48,7 +48,7 @@ fn two_hands_behind_a_router_get_targets_with_one_time_stamp() {
         names.iter().all(|name| found.iter().any(|hand| hand.name == *name))
     });
 
-    // For each key, the time stamp of the first Target with a command that has passed the router.
+    // For each key, the time stamp of the first Target that contains a command and has passed the router.
     let seen: Arc<Mutex<BTreeMap<String, u64>>> = Arc::default();
     let mut config = zenoh::Config::default();
     config.insert_json5("mode", "\"client\"").expect("a key");

@@ -38,10 +38,10 @@ pub trait FingerIo: Send {
     /// deadline, the sample is used nevertheless. If the next period has begun by then, the cycle counts as an overrun.
     ///
     /// # Errors
-    /// The exchange counts as a lost reply of a serial board.
+    /// A failed exchange counts like a lost reply of a serial board.
     fn exchange(&mut self, command: &IoCommand) -> io::Result<IoSample>;
 
-    /// Enters the end state of the terms.
+    /// Enters the end state, [`IoTerms::end_state`].
     ///
     /// # Errors
     /// The library calls `stop` again. If `stop` keeps failing, the library calls it at least three times in all.

@@ -56,7 +56,7 @@ pub(super) struct Hardware {
 }
 
 impl Hardware {
-    /// Returns `None` if the step of the tensions is not a positive number.
+    /// Returns `None` if `properties.tension_unit` is not a positive number.
     pub fn new(
         configuration: &Configuration,
         finger: FingerNumber,
@@ -98,8 +98,9 @@ impl Hardware {
         self.properties.in_step
     }
 
-    /// Returns the status of a Reply. If the flag *zero valid* is clear from opening on, it cannot show that the zero
-    /// is lost again later. *Configured* is therefore clear after a loss, as on a serial board that restarts.
+    /// Returns the status of a Reply. If the flag *zero valid* was already clear at opening, it cannot show a later
+    /// loss of the zero. Therefore each loss after opening also clears *configured*, as on a serial board that
+    /// restarts.
     pub fn status(&self) -> Status {
         let configured = if self.lost_since_open { Status::default() } else { Status::CONFIGURED };
         let state = match self.state {

@@ -50,8 +50,8 @@ impl fmt::Debug for IoBoard {
 }
 
 impl IoBoard {
-    /// Creates the board of a finger, whose hardware has these `properties`. Returns `None` if the step of the tensions
-    /// is not a positive number.
+    /// Creates the board of a finger, whose hardware has these `properties`. Returns `None` if
+    /// `properties.tension_unit` is not a positive number.
     pub fn new(
         configuration: &Configuration,
         finger: FingerNumber,
@@ -72,7 +72,7 @@ impl IoBoard {
         })
     }
 
-    /// Returns whether the hardware and the servo run in step.
+    /// Returns whether the servo waits for the hardware, as [`IoProperties::in_step`] says.
     pub fn in_step(&self) -> bool {
         self.hardware.in_step()
     }
@@ -147,8 +147,8 @@ impl Transport for IoBoard {
         }
     }
 
-    /// Carries out the exchange of a Command, which may return after the deadline. Does not wait for the answer to a
-    /// Command whose exchange has failed, because there is none.
+    /// Carries out the exchange of a pending Command, and reads answers. The exchange may end after the deadline. If it
+    /// fails, the Command has no answer, so the call does not wait for one.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
         if let Some(failure) = self.failure.take() {
             return Err(failure);

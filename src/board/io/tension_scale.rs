@@ -1,6 +1,6 @@
 //! Conversion of tensions in N to the gauge counts of the board protocol.
 
-/// Default step of the tensions, N. It is a fifth of the step of a 12-bit converter for 100 N.
+/// Default step of the tensions, N. It is about a fifth of the step of a 12-bit converter for 100 N.
 pub const DEFAULT_TENSION_UNIT: f64 = 0.005;
 
 /// The count at zero tension. Tensions may be negative, because an unloaded gauge is noisy and drifts.

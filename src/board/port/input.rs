@@ -1,10 +1,10 @@
 //! Waits for input of a port, no longer than asked.
 //!
-//! A poll(2) of a terminal that has no bytes waits for the worker of the kernel that carries them. This wait has no
-//! time limit, and the worker has no real-time priority: on a busy machine, it lasted for more than a second. The port
-//! is therefore registered with an epoll(7), and the poll is one of the epoll. The worker itself makes the epoll
-//! readable, so this poll does not wait for the worker. The epoll is edge-triggered: otherwise it would poll the
-//! terminal again after every event.
+//! A poll(2) of a terminal that has no bytes waits for the kernel worker that carries bytes to the terminal. This wait
+//! has no time limit, and the worker has no real-time priority: on a busy machine, the wait lasted for more than a
+//! second. The port is therefore registered with an epoll(7), and the epoll is polled instead of the terminal. The
+//! worker itself makes the epoll readable, so this poll does not wait for the worker. The epoll is edge-triggered:
+//! otherwise it would poll the terminal again after every event.
 #![allow(unsafe_code, reason = "the raw descriptors of the port and of the epoll")]
 
 use crate::board::descriptor::{Descriptor, check};
@@ -37,8 +37,8 @@ impl Input {
         Ok(Self { epoll })
     }
 
-    /// Waits for events of this port from now on. Bytes that the port already has are an event. Changing the settings
-    /// of the port is an event too, although there may be no bytes.
+    /// Registers the port, so that [`Input::wait`] returns its events from now on. Bytes that the port already has are
+    /// an event. Changing the settings of the port is an event too, although there may be no bytes.
     ///
     /// # Errors
     /// Returns the error of the system.
@@ -65,8 +65,8 @@ impl Input {
             _ => return Err(self.epoll.error()),
         }
         let mut event = libc::epoll_event { events: 0, u64: 0 };
-        // This call does not wait, because its timeout is in milliseconds. epoll_pwait2 has nanoseconds, but older
-        // kernels do not have it.
+        // The ppoll above does the waiting, because the timeout of epoll_wait is in milliseconds. epoll_pwait2 has
+        // nanoseconds, but older kernels do not have it.
         // SAFETY: `event` has room for one event.
         match unsafe { libc::epoll_wait(self.epoll.number(), &mut event, 1, 0) } {
             0 => Ok(None),

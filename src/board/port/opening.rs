@@ -37,7 +37,8 @@ impl Port {
         port.request_low_latency();
         // SAFETY: the descriptor was opened above.
         check(unsafe { libc::tcflush(port.descriptor.number(), libc::TCIFLUSH) }).map_err(set_up)?;
-        // The new settings would be an event without bytes, and because of it the first wait would poll the port.
+        // A change of the settings is an event without bytes, for which the first wait would poll the port. So the port
+        // is watched only after the change.
         port.input.watch(&port.descriptor).map_err(failed)?;
         Ok(port)
     }

@@ -46,8 +46,8 @@ impl<'a> FieldReader<'a> {
     }
 }
 
-/// Appends numbers to a frame. The buffer has the size of the largest frame, and a test checks that every type fits.
-/// Numbers that do not fit are omitted.
+/// Appends numbers to a frame. The buffer has the size of the largest frame, and a test checks that every type of frame
+/// fits. Numbers that do not fit are omitted.
 pub(super) struct FieldWriter<'a> {
     buffer: &'a mut [u8],
     length: usize,

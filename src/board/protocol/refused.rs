@@ -26,7 +26,8 @@ pub enum Reason {
     /// 1: there is no common protocol version. Detail: the board's lowest version in the low byte, its highest in the
     /// high byte.
     Version,
-    /// 2: the board cannot carry out the value of a field. Detail: offset of the field, counted from the header.
+    /// 2: the board cannot carry out the value of a field. Detail: offset of the first such field; the header byte has
+    /// the offset 0.
     Value,
     /// 3: a Command arrived before any Configure. The board was just switched on, or lost its power.
     NotConfigured,

@@ -114,8 +114,8 @@ impl JointFriction {
             };
             level(true) - level(false)
         });
-        // The newtons per count of the gauges, relative to their mean. If the mean of the gains with these weights is
-        // 1, the gains do not change the mean of the newtons per count.
+        // The newtons per count of the gauges, relative to their mean. Gains whose weighted mean is 1 do not change the
+        // mean of the newtons per count.
         let weights = instruments.newton_per_count.abs();
         let weights = weights / weights.mean();
         let relative = |rise: &Vector4<f64>| {

@@ -16,8 +16,9 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 pub(super) const SIGNIFICANT: f64 = 0.01;
 /// Largest plausible difference, as a part of the largest moment arm of the joint.
 const LARGEST: f64 = 0.2;
-/// Largest plausible error of a joint's range that is computed with the configured moment arms, as a part of the range.
-/// A larger error means that something blocks the joint, or that its stops are not where they are configured.
+/// Largest plausible difference between a joint's range that is computed with the configured moment arms and its
+/// configured range, as a part of the configured range. A larger difference means that something blocks the joint, or
+/// that its stops are not where they are configured.
 const RANGE: f64 = 0.08;
 
 /// Mean readings of a finger at rest.

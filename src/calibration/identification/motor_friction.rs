@@ -82,8 +82,8 @@ impl MotorFriction {
 mod tests {
     use super::*;
 
-    /// Solves for motors whose only friction is that of their conduits, `conduit`. Without friction, their commanded
-    /// pull would equal the tension.
+    /// Solves for motors whose only friction is that of their conduits. The commanded pull is 1 + `conduit` times the
+    /// tension while winding in, and 1 - `conduit` times the tension while letting out.
     fn solved(conduit: f64) -> Result<MotorFrictionFound, Obstacle> {
         let mut friction = MotorFriction::new();
         for fit in &mut friction.fits {

@@ -22,7 +22,7 @@ pub(super) struct Pressing {
     base: Vector4<f64>,
     patterns: [Vector4<f64>; 4],
     leg: usize,
-    /// Time on this leg, s.
+    /// Time since the beginning of this leg, s. A leg is a ramp and the pause after it.
     seconds: f64,
     begun: Option<Vector4<f64>>,
 }

@@ -63,9 +63,9 @@ impl Identification {
         Ok(Identified { rotor_inertia: self.other_inertia(&found.tendon_stiffness, &instruments.radius), ..found })
     }
 
-    /// Returns the inertia of the rotors, kg m^2, if one differs from its configured value. A motor that could not be
-    /// measured keeps its configured value, and so does one whose measured inertia no configuration may have.
-    /// `stiffness` is the identified stiffness of the tendons, N/cm, and `radius` is in cm.
+    /// Returns the inertia of the rotors, kg m^2, if one differs from its configured value. A rotor keeps its
+    /// configured inertia if its inertia could not be measured, or if a configuration must not contain the measured
+    /// inertia. `stiffness` is the identified stiffness of the tendons, N/cm, and `radius` is in cm.
     fn other_inertia(&self, stiffness: &Vector4<f64>, radius: &Vector4<f64>) -> Option<Vector4<f64>> {
         let (configured, viscous) = &self.rotors;
         let inertia = Vector4::from_fn(|motor, _| {
@@ -95,8 +95,8 @@ impl Identification {
         elasticity: &StiffnessFound,
         instruments: &Instruments,
     ) -> Tolerances {
-        // The friction of a conduit is a pull of the motor per tension at the gauge, so it depends on the scale. The
-        // other terms are ratios of values in one scale.
+        // The friction of a conduit is the ratio of a pull of the motor to a tension at the gauge, so it depends on the
+        // scale. The other terms are ratios of values in one scale.
         let conduit = motors.conduit / self.scale(motors);
         let friction = (conduit + free.pulley).max().max(elasticity.rubbing / SHARE_OF_FRICTION);
         let moment_arms = self.moment_arms.map(|arms| {

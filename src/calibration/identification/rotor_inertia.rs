@@ -104,7 +104,7 @@ impl Oscillation {
     }
 }
 
-/// The constants of the four motors that convert an oscillation to an inertia.
+/// Constants of the four motors, for the conversion of an oscillation to an inertia.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motors {
     /// Commanded pull divided by the tension, without friction.

@@ -45,15 +45,15 @@ pub(super) struct TendonStiffness {
 pub(super) struct StiffnessFound {
     /// Mean stiffness in the range of tensions in which the controller works, N/cm.
     pub stiffness: Vector4<f64>,
-    /// Largest relative difference between the stretch per newton, which depends on the tension, and the constant one
-    /// that `stiffness` gives, plus the uncertainty of the measurement.
+    /// Largest relative difference between the local compliance, which depends on the tension, and the mean compliance,
+    /// which is the inverse of `stiffness`, plus the uncertainties `UNCERTAIN` and `unexplained`. At most 1.
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,
     /// `residual` as a fraction of the stretch over the range of tensions in which the controller works.
     pub unexplained: f64,
-    /// Largest difference that the friction of a conduit causes between the mean tension along its tendon and the
-    /// tension at the gauge, as a fraction of the latter.
+    /// Largest fraction by which the friction of a conduit makes the mean tension along its tendon differ from the
+    /// tension at the gauge.
     pub rubbing: f64,
     /// `linear` is c, cm/N. `curved` is d, cm/N^2. `friction` is h, cm/N.
     linear: Vector4<f64>,

@@ -1,4 +1,4 @@
-//! All motors are held in place. They tighten the tendons, pull one by one, and raise all tensions together.
+//! Controls the positions of all motors: they tighten the tendons, pull one by one, and raise all tensions together.
 
 use super::readings::Readings;
 use crate::calibration::average::Average;
@@ -23,8 +23,8 @@ const READING: f64 = 0.04;
 const RAISED: f64 = 2.0;
 /// Time in which all tensions rise together, s.
 const RAISING: f64 = 0.12;
-/// Pull of a pulse, in t_min. After a pulse the links vibrate until their friction stops them. The stronger the pulse,
-/// the longer they vibrate.
+/// Pull of a pulse, as a multiple of t_min. After a pulse the links vibrate until their friction stops them. The
+/// stronger the pulse, the longer they vibrate.
 const PULSE: f64 = 2.0;
 /// Duration of a pulse, s.
 pub(super) const LENGTH: f64 = 0.006;

@@ -7,8 +7,8 @@ use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
 /// All rises are compared as fractions of the expected rise. The usual rise is the mean of the middle two of the four
-/// gauges. A gauge is dead if its rise is less than this part of the usual rise. The usual rise
-/// counts as at least this value, so that dead gauges are also found if most gauges are dead.
+/// gauges. A gauge is dead if its rise is less than this part of the usual rise. If the usual rise is less than this
+/// value, this value replaces it, so that dead gauges are also found if most gauges are dead.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences
@@ -126,7 +126,7 @@ fn predicted(instruments: &Instruments, dynamics: &LinkDynamics, joints: &Vector
     sum
 }
 
-/// The squared difference of a response from a prediction, whose factor is unknown.
+/// The squared difference between a response and a prediction that is multiplied by the best-fitting factor.
 fn misfit(response: &Vector4<f64>, predicted: &Vector4<f64>) -> f64 {
     let factor = response.dot(predicted) / predicted.norm_squared().max(f64::MIN_POSITIVE);
     (response - predicted * factor).norm_squared()

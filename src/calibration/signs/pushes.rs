@@ -12,7 +12,7 @@ const TURNED: f64 = 0.005;
 const FIRST_PUSH: f64 = 0.4;
 /// Each push is larger than the previous one by this factor, until the motor turns.
 const GROWTH: f64 = 1.3;
-/// Largest push, in t_min.
+/// Largest push, in multiples of t_min at the tendon.
 const HARDEST_PUSH: f64 = 2.0;
 /// Longest duration of a push, and duration of the pause after the motor has turned, s.
 const PUSH_TIME: f64 = 0.1;

@@ -16,13 +16,13 @@ const READING: f64 = 0.1;
 /// A motor has stalled if it lags by more than the first value, cm, plus the second value times the amplitude.
 const STALLED: (f64, f64) = (0.03, 0.25);
 /// A side is tight if a tension changes by more than this over the outer half of the side, N, or if the motor stalls at
-/// its end.
+/// the end of the side.
 pub(super) const TIGHT: f64 = 0.5;
 /// A side is slack if every tension changes by less than this over the outer half of the side, N, and the motor does
-/// not stall at its end.
+/// not stall at the end of the side.
 const SLACK: f64 = 0.25;
 
-/// A sweep: one motor turns back and forth.
+/// A sweep: one motor turns back and forth, to both sides of `centre`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep {
     pub centre: f64,

@@ -11,8 +11,9 @@ use nalgebra::Vector4;
 
 /// Speed of a sweep, cm/s.
 const SPEED: f64 = 0.5;
-/// A gauge responds alone if the change of every other gauge is below this part of its own change. The tensions of a
-/// free finger change along the null vector of R. Every entry of this vector is above this part of the largest one.
+/// A gauge responds alone if every other gauge changes by less than this fraction of the change of that gauge. No gauge
+/// of a free finger responds alone: the tensions change along the null vector of R, and every entry of this vector is
+/// above this fraction of the largest entry.
 const ALONE: f64 = 0.2;
 
 impl SignSearch {
@@ -69,7 +70,8 @@ impl SignSearch {
     }
 
     /// Stores the signs of the gauges, from the change between the slack end and the tight end. If only one gauge
-    /// responds, something holds the finger, and the gauge belongs to the tendon that the motor pulls.
+    /// responds, something holds the finger, and the gauge is on the tendon that the motor pulls. The gauge must then
+    /// have the motor's number. Otherwise, parts are swapped.
     fn note_gauges(&mut self, sweep: &Sweep, side: f64) -> Result<(), Obstacle> {
         let change = sweep.change_between_ends() * side;
         let first = change.abs().imax();

@@ -11,11 +11,12 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Length by which every tendon is let out, cm: several times its stretch under the pretension.
 const LET_OUT: f64 = 0.15;
-/// Force with which a motor begins to let its tendon out, as a fraction of t_min. Most motors that can control t_min
-/// have less friction than this force.
+/// Force with which a motor begins to let its tendon out, as a fraction of t_min (`tendon.minimum`). If a motor can
+/// control the tension t_min, its friction is in most cases less than this force.
 const PUSH: f64 = 0.8;
-/// Until its tendon is out, the force of a motor rises at the rate [`HARDER`], t_min/s, up to [`HARDEST`], in t_min.
+/// Rise of the force until the tendon is out, t_min/s.
 const HARDER: f64 = 0.5;
+/// Largest force, in t_min.
 const HARDEST: f64 = 2.0;
 /// Time limit for letting the tendons out, s.
 const LETTING_OUT_LIMIT: f64 = 5.0;
@@ -92,7 +93,8 @@ impl GaugeZero {
     }
 }
 
-/// Checks that a gauge reports at least `least` N less when its tendon is slack.
+/// Checks `fall`, the tension that a gauge reports for the tight tendon minus the one for the slack tendon, N. It must
+/// be `least` or more.
 fn check_fall(tendon: u8, fall: f64, least: f64) -> Result<(), Obstacle> {
     match fall {
         fall if fall <= -least => Err(Obstacle::ReversedGauge { gauge: tendon }),

@@ -48,8 +48,8 @@ impl Standstill {
         }
     }
 
-    /// Returns the joint with the largest deviation from its mean, 0 to 2, and the deviation, rad. Returns `None` if no
-    /// joint deviates by more than [`TOLERANCE`].
+    /// Returns the number (0 to 2) of the joint that deviates most from its mean, and the deviation, rad. Returns
+    /// `None` if no joint deviates by more than [`TOLERANCE`].
     pub fn moved(&self) -> Option<(usize, f64)> {
         let (lowest, highest) = self.extremes?;
         let mean = self.sum / self.samples;
@@ -62,7 +62,8 @@ impl Standstill {
 mod tests {
     use super::*;
 
-    /// Returns the verdict on joint 1, which moves along `path`, rad as a function of s, for 0.3 s at 1000 Hz.
+    /// Moves joint 1 along `path` (rad, as a function of the time in s) for 0.3 s at 1000 Hz, and returns the result of
+    /// `Standstill::moved`.
     fn moved(path: impl Fn(f64) -> f64) -> Option<(usize, f64)> {
         let mut standstill = Standstill::default();
         for cycle in 0..300 {

@@ -1,5 +1,5 @@
-//! Decides whether a finger touches something, by thresholds with hysteresis. Before the comparison with a threshold,
-//! the slowly varying error of the torques is subtracted. This error is learned while the finger touches nothing.
+//! Decides whether a finger touches something, by thresholds with hysteresis. Before the torques are compared with a
+//! threshold, their slowly varying error is subtracted. This error is learned while the finger touches nothing.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
@@ -14,9 +14,10 @@ const CALMING: f64 = 0.1;
 const FIRST: f64 = 0.2;
 
 /// Joint rate at which the error of the torques is learned half as fast as at rest, rad/s. A motion adds errors of its
-/// own: the friction of its direction, and the inertia of links with wrong masses. If these errors were learned, a
-/// contact right after the motion would preserve them, because nothing is learned during a contact. So a finger learns
-/// fully at rest and during the first average. After the first average, a moving finger learns only slow drifts.
+/// own: friction that depends on the direction of the motion, and the inertia of links whose configured masses are
+/// wrong. If these errors were learned, a contact right after the motion would preserve them, because nothing is
+/// learned during a contact. So a finger learns fully at rest and during the first average. After the first average, a
+/// moving finger learns only slow drifts.
 const SLOW: f64 = 0.1;
 
 /// The constant part of the detection.

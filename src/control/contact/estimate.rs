@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// zero while the finger does not follow a set point.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct ContactEstimate {
-    /// Torques of the surroundings on the joints, N cm, relative to the slowly varying error of the model.
+    /// Torques of the surroundings on the joints, N cm. The slowly varying error of the model has been subtracted.
     pub torques: Vector3<f64>,
     /// The force of the surroundings on the fingertip that causes these torques, N, in the finger's frame. Near a
     /// singular pose, the component in the direction that causes no joint torques is reduced toward zero.

@@ -1,5 +1,5 @@
-//! Contact without sensors: the torques that the surroundings exert on the joints follow from the tensions and from the
-//! motion. The force at the fingertip follows from these torques.
+//! Contact without touch sensors: the torques that the surroundings exert on the joints follow from the tensions and
+//! from the motion. The force at the fingertip follows from these torques.
 
 mod detection;
 mod estimate;

@@ -31,7 +31,8 @@ pub(in crate::control) struct ContactObserver {
     mass_tolerance: f64,
     /// Shortest time between two samples, s.
     interval: f64,
-    /// Fraction of a change of the torque of gravity that is learned in [`REFRESH`] samples.
+    /// At full learning speed, this fraction of a change in the torque of gravity enters `learned_weight` in
+    /// [`REFRESH`] samples.
     learned: f64,
 }
 
@@ -50,7 +51,7 @@ struct Following {
     sample: u8,
     /// Inertia matrix of the links and its derivatives, N cm s^2.
     links: LinkMomentum,
-    /// Torque of gravity for which the error of the torques has been learned, N cm.
+    /// Average torque of gravity in the poses in which the error of the residual torques was learned, N cm.
     learned_weight: Vector3<f64>,
     /// Torque that friction of the tendons and the uncertain weight of the links can cause, N cm.
     allowed: Vector3<f64>,

@@ -117,8 +117,8 @@ impl Controller {
 }
 
 /// Checks that the motors, with their continuous torque, can hold the tensions of a finger at rest against friction.
-/// Otherwise the motors of a finger that does nothing would overheat. Only state feedback is checked here, because it
-/// holds higher tensions than the pretension.
+/// Otherwise the motors of a finger that does nothing would overheat. Only state feedback is checked here: it holds
+/// tensions above the pretension. [`ConfiguredFinger::check`] checks the pretension.
 fn check_continuous_torque(
     finger: &ConfiguredFinger,
     motor_torque: &MotorTorque,

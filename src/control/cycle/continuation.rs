@@ -39,8 +39,8 @@ impl Controller {
             law.take_over(old, law_state);
         }
         // The contact estimate has learned the error of the torques that `previous` computes. A controller that
-        // computes other torques must learn again: the difference would count as a contact, and nothing is learned
-        // during a contact, so this contact would never end.
+        // computes other torques must learn again. Otherwise the difference of the torques would count as a contact.
+        // Nothing is learned during a contact, so this contact would never end.
         let weight = |controller: &Self| controller.gravity.weight(&state.gravity, &state.report.joints);
         let same_torques = self.contact.has_arms_of(&previous.contact) && self.sensors == previous.sensors;
         if !same_torques || weight(self) != weight(previous) {

@@ -39,8 +39,8 @@ impl Controller {
     pub(super) fn tighten(&self, state: &mut State, offset: &Vector4<f64>) {
         let now = self.slackness(state, offset);
         let joints = Joints {
-            // The joint angles that state feedback estimates are not used: Figure 9, 10 or 11 controls the tensions
-            // here, and needs the low-pass filtered stretch.
+            // The estimates of state feedback are not used here. The controller of Figure 9, 10 or 11 controls the
+            // tensions, and needs joint angles that are corrected for the low-pass filtered stretch of the tendons.
             angles: self.joint_positions.joints(&state.motor_angles, &state.tensions),
             rates: self.joint_positions.joint_rates(&state.motor_speeds),
         };

@@ -93,8 +93,8 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Writes to the report the factor, 0 to 1, by which the stiffness must be scaled. With this factor the pose
-    /// supports the sum of the scaled stiffness of both springs and the stiffness of the soft limits. `k_theta` is the
+    /// Writes to the report the factor, 0 to 1, by which the stiffness of both springs must be scaled. With this
+    /// factor, the tendons are stiff enough in this pose for the springs and the soft limits together. `k_theta` is the
     /// stiffness of the tip's spring, N cm/rad. Returns the shares of the tendons' stiffness that the unscaled springs
     /// and the soft limits use.
     fn limit_stiffness(

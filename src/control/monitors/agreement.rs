@@ -5,7 +5,7 @@
 //!
 //! n^T (r m - (t - t_home) / k) = 0
 //!
-//! for any joint angles. Equivalently, three tendons determine the tension of the fourth,
+//! for any joint angles theta. Equivalently, three tendons determine the tension of the fourth,
 //!
 //! t = k (r m - R^T theta) + t_home.
 //!
@@ -46,7 +46,7 @@ const ZEROING: u32 = 32;
 /// Time for which the disagreement must last, s.
 const DURATION: f64 = 0.01;
 
-/// Gain per sample of the mean imbalance between pull and tension.
+/// Gain per sample of the running mean of pull minus tension.
 const AVERAGING: f64 = 0.05;
 
 #[derive(Clone, Debug)]

@@ -14,8 +14,8 @@ impl GaugeEnds {
         Self { falling: finger.gauge.newton_per_count.map(|scale| scale < 0.0) }
     }
 
-    /// Returns whether a gauge is at the end of its range to which a tension pulls it. `full_scale` is the largest
-    /// count of the gauges.
+    /// Returns whether a gauge is at the high-tension end of its range. `full_scale` is the largest count of the
+    /// gauges.
     #[inline]
     pub fn at_highest(&self, gauge: usize, count: u16, full_scale: u16) -> bool {
         // The count of a falling gauge at this end is 0. The subtraction turns it into 65535, which no full scale

@@ -46,7 +46,7 @@ const LEAST_REVERSALS: f64 = 0.15;
 /// A gauge is also known to flicker if its counts have a bend in more than this fraction of the samples. At a bend, the
 /// second difference of the counts changes its sign. While the dither of the tensions changes a tension by several
 /// counts in a sample, noise hardly ever reverses the direction. The noise still changes the sign of the second
-/// difference, which a smooth tension does not.
+/// difference. A smooth tension does not change it.
 const LEAST_BENDS: f64 = 0.05;
 
 /// Smallest second difference that counts as a bend, counts. The second difference of a quantised smooth tension is

@@ -1,4 +1,4 @@
-//! Fraction of the recent cycles that failed: their reply was lost or damaged, or the servo skipped periods after them.
+//! Fraction of the recent cycles with one kind of failure: a lost reply, a damaged reply, or skipped periods.
 
 /// The weighted fraction of failed cycles. Old cycles fade: after one window, the weight of a cycle has fallen to 1/e.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ impl LineQuality {
         self.share
     }
 
-    /// Forgets all periods.
+    /// Forgets all cycles.
     pub fn forget(&mut self) {
         self.share = 0.0;
     }

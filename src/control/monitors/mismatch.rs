@@ -86,7 +86,8 @@ impl Mismatch {
         self.old.estimate[tendon] * terms[tendon]
     }
 
-    /// Returns the disagreement that friction can cause, N. `expected` is the value for an unknown hand.
+    /// Returns the disagreement that friction can cause, N. `expected` is the value for an unknown hand. The result is
+    /// `expected` until the noise is learned, and at most `expected` afterwards.
     pub fn friction(&self, expected: f64) -> f64 {
         self.old.friction(expected)
     }

@@ -39,7 +39,7 @@ pub(super) struct StalledMotor {
 pub(super) struct Memory {
     /// Time for which each motor has been stalled, s, with the sign of pull minus tension.
     duration: [f64; 4],
-    /// Angle that each motor has turned since the beginning of this time, rad.
+    /// Angle that each motor has turned since its `duration` began, rad.
     turned: [f64; 4],
     /// Time since the imbalance was last larger than tolerated, s.
     gap: [f64; 4],

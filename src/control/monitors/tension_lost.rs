@@ -1,4 +1,4 @@
-//! Detects tendons that lose their tension because they are torn, slip, or have a dead gauge.
+//! Detects tendons that are torn, slip or have a dead gauge.
 //!
 //! A fast motion or an impact makes an intact tendon slack for a moment, and the tendon hangs. A torn or slipping
 //! tendon, or one with a dead gauge, shows no tension although the other three gauges and the encoders indicate that it
@@ -23,13 +23,13 @@ const LOW: f64 = 0.3;
 /// Fraction of t_min below which the tension of a tendon is gone.
 const GONE: f64 = 0.1;
 
-/// The missing tension is the tension that the stretch indicates minus the tension that the gauge shows. The tension of
-/// a low tendon counts as missing if the missing tension has risen by this fraction of t_min. Its rise is measured from
-/// its mean before any tendon became low. This mean is not zero on a finger with friction along its tendons or with
-/// inexact parameters.
+/// The missing tension is the tension that the stretch indicates minus the tension that the gauge shows. The missing
+/// tension of a low tendon counts if it has risen by more than this fraction of t_min. The rise is measured from the
+/// mean before any tendon became low. This mean is not zero on a finger with friction along its tendons or with inexact
+/// parameters.
 const MISSED: f64 = 0.3;
 
-/// If the mean of the missing tension (see [`MISSED`]) is positive, the rise from which tension counts as missing is
+/// If the mean of the missing tension (see [`MISSED`]) is positive, the rise from which the missing tension counts is
 /// larger by this fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The
 /// configuration indicates even more stretch when the tensions of the other tendons rise.
 const INEXACT: f64 = 0.5;
@@ -44,7 +44,7 @@ const TOGETHER: f64 = 0.004;
 /// Time constant of the mean of the missing tension before any tendon became low, s.
 const BEFORE: f64 = 0.02;
 
-/// Time for which a tendon with missing tension must be low, s.
+/// Time for which a tendon must be low and its missing tension must count, s.
 const DURATION: f64 = 0.012;
 
 /// Time after which a low tendon has lost its tension, s. No motion keeps an intact tendon slack for so long.
@@ -64,7 +64,7 @@ pub(super) struct TensionLost {
     low: f64,
     /// Tension below which the tension of a tendon is gone, N.
     gone: f64,
-    /// Rise of the missing tension from which the tension counts as missing, N.
+    /// Rise from which the missing tension counts, N (see [`MISSED`]).
     missed: f64,
 }
 
@@ -80,7 +80,7 @@ pub(super) struct Memory {
     before: Vector4<f64>,
     /// Whether each tendon has hung since it became low.
     hung: [bool; 4],
-    /// Time for which each tendon has been low with missing tension, s.
+    /// Time for which each tendon has been low and its missing tension has counted, s.
     missed: Vector4<f64>,
     /// Time for which the tension of each tendon has been gone, s.
     gone: Vector4<f64>,

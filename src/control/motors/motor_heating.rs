@@ -20,7 +20,7 @@ pub(crate) struct MotorHeating {
     continuous_heat: Vector4<f64>,
     /// Change of the heat in a cycle as a fraction of tau^2 - h.
     gain: f64,
-    /// T, s.
+    /// Thermal time constant T of the winding, s.
     time: f64,
 }
 

@@ -36,7 +36,7 @@ impl JointPositions {
     }
 
     /// Returns theta, rad. `tensions` must be low-pass filtered: the correction closes a positive feedback loop around
-    /// the tendon controller, which is stable only if the correction is slow.
+    /// the tendon controller. This loop is stable only if the correction is slow.
     #[inline]
     pub fn joints(&self, motor_angles: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
         self.from_motors * motor_angles + self.from_tensions * (tensions - self.home)

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// Time for which the motors must keep their position, s.
 const REST: f64 = 0.05;
 
-/// Largest motion of a motor that is considered to be at rest, rad. The last bit of an encoder flickers.
+/// Largest motion of a motor that is considered to be at rest, rad. It is just above two counts of the default encoder,
+/// because the last bit of an encoder flickers.
 const LARGEST_MOTION: f64 = 0.007;
 
 /// The position of the motors, and the time for which they have kept it.

@@ -41,8 +41,8 @@ pub struct AdmissibleDamping {
 }
 
 impl AdmissibleDamping {
-    /// Constructs the range for the controller of `finger` at `rate`, Hz. If the rank of R is below 3, only a ratio of
-    /// 1 is admitted. No controller accepts such an R.
+    /// Constructs the range for the controller of `finger` at `rate`, Hz. If the rank of the moment arms R is below 3,
+    /// only a ratio of 1 is admitted. No controller accepts such an R.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
         let scheme = finger.controller.scheme(rate);
         let correspondence = supported(finger).map_or(f64::INFINITY, |supported| DEFAULT_SUPPORTED / supported);

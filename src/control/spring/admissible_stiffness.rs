@@ -61,8 +61,9 @@ impl AdmissibleStiffness {
     /// Returns the share of R k R^T that each of two stiffnesses uses: K_theta, and that of the soft joint limits
     /// (`limits`). Both are in N cm/rad.
     ///
-    /// The largest eigenvalue of a sum of matrices is at most the sum of their largest eigenvalues. For the soft
-    /// limits, the trace is used instead of the largest eigenvalue, because it is at least as large.
+    /// The largest eigenvalue of a sum of matrices is at most the sum of their largest eigenvalues, so both together
+    /// use at most the sum of the two shares. For the soft limits, the trace of L^-1 diag(`limits`) L^-T is used as the
+    /// share, because it is at least as large as the largest eigenvalue of this matrix.
     #[inline]
     pub fn used(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> UsedShares {
         let [spring, ..] = eigenvalues(&self.relative(k_theta));

@@ -4,8 +4,8 @@ use crate::model::LinkWeight;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// Fastest change of the compensated gravity, m/s^3. A step of gravity then causes no jump in torque. Gravity that
-/// turns once a second changes by 62 m/s^3.
+/// Fastest change of the compensated gravity, m/s^3. Because of this limit, a step of gravity causes no jump in torque.
+/// Gravity that turns once a second changes by 62 m/s^3.
 const FASTEST: f64 = 2000.0;
 
 /// tau = - sum of J_i^T m_i g over the centres of mass.

@@ -19,8 +19,9 @@ impl JointSpring {
         (self != Self::default()).then_some(self)
     }
 
-    /// Returns the stiffness of the tip, N/cm, that bounds of Kx use as the equivalent of K_theta. This is the largest
-    /// eigenvalue of K_theta divided by the square of `lever`, the length of the last link, cm.
+    /// Returns the stiffness of the tip, N/cm, that is taken as the equivalent of K_theta in the computation of the
+    /// range of the damping. This is the largest eigenvalue of K_theta divided by the square of `lever`, the length of
+    /// the last link, cm.
     ///
     /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. The
     /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more stiffness than joint 2. When

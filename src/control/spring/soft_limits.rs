@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 /// Stiffness of a limit where the tendons support it, N cm/rad. A bent finger at 3 N/cm has about this stiffness.
 const STIFFNESS: f64 = 150.0;
 
-/// Largest fraction of the supported stiffness of a joint that the limit of the joint may use. With this fraction, some
+/// Largest fraction of a joint's admissible stiffness that the joint's limits may use. With this fraction, some
 /// stiffness is left for the tip even if all three joints are at their limits.
 const PART: f64 = 0.3;
 

@@ -75,8 +75,8 @@ impl SpringTransition {
     }
 
     /// Returns the springs of this cycle: the spring of the tip, and the joint spring if there is one. They approach
-    /// the springs of `set_point` from cycle to cycle, except that they have the anchor of `set_point` at once. The
-    /// first call starts with the springs of `set_point`.
+    /// the springs of `set_point` from cycle to cycle. Only the anchor is that of `set_point` at once. The first call
+    /// starts with the springs of `set_point`.
     #[inline]
     pub fn advance<'a>(
         &self,

@@ -122,9 +122,9 @@ impl Drives {
 
     /// Returns the factors a on alpha (`inertia_gain`) and b on c (`relative_damping`) for the common component of the
     /// tensions. The joints do not move with this component. The stretch x of the tendons in this component obeys
-    /// m x'' + b c x' + a alpha k x = 0. The factors give this motion a frequency and a damping ratio that do not depend
-    /// on the mass m of the rotors. With factors that did not depend on m, the tensions of fingers with rotors of 2.5
-    /// times the inertia were low for up to 287 ms after a bump.
+    /// m x'' + b c x' + a alpha k x = 0. The factors give this motion a frequency and a damping ratio that do not
+    /// depend on the mass m of the rotors. With factors that did not depend on m, the tensions of fingers with rotors
+    /// of 2.5 times the inertia were low for up to 287 ms after a bump.
     fn common_factors(&self, numbers: &Numbers, relative_damping: f64) -> CommonFactors {
         let (mass, stiffness) = (self.mass.mean(), self.stiffness.mean());
         let frequency = numbers.common_frequency;

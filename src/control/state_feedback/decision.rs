@@ -243,8 +243,8 @@ impl StateFeedback {
         let motor_rates = self.r.tr_mul(&reference.rates);
         let omega_squared = self.dither.frequency * self.dither.frequency;
         let error = self.scale_common(error, self.common_factors.gain);
-        // The coefficient of the joints' speed must be exactly 1. A coefficient of 0.94 acted as an additional damping
-        // of three times the spring's damping.
+        // `now.speeds` must have a coefficient of exactly 1. A coefficient of 0.94 acted as an additional damping of
+        // three times the spring's damping.
         let stretching = now.motor_speeds - now.speeds - (tension_rates + shake.rates).component_div(&self.stiffness);
         let stretching = self.scale_common(&stretching, self.common_factors.damping);
         let yielding = (tension_accelerations - shake.tensions * omega_squared).component_div(&self.stiffness);

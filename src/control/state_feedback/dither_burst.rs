@@ -16,8 +16,8 @@ pub(super) const FAST: f64 = 0.4;
 pub(super) const SLOW: f64 = 0.2;
 /// Largest torque of the spring with which a burst begins. It is a fraction of the sum of the magnitudes of the torques
 /// that the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension
-/// hold the finger against such a torque. A larger torque usually means that the finger touches something. At walls,
-/// bursts of fingers with rotors of half the inertia caused motions of 2 mm.
+/// hold the finger against such a torque. A larger torque usually means that the finger touches something. Without this
+/// limit, fingers with rotors of half the inertia moved by 2 mm rms at walls.
 const HELD: f64 = 0.1;
 
 /// Time constant with which the envelope rises, s. Directly after a motion the tensions are still low. With 0.01 s, the

@@ -1,4 +1,5 @@
-//! Adapts the dither of the tensions of a finger with known pulley friction to its spring and to contact.
+//! Adapts the amplitude of the tension dither to the spring of the finger and to contact, if the pulley friction is
+//! known.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -16,7 +17,7 @@ const FREE_FIRMNESS: f64 = 0.2;
 /// but creeps there for up to 0.76 s after a step.
 const FACTORS: [f64; 2] = [0.7, 2.0];
 
-/// Additional factor on the amplitude of a finger that touches something. At walls the dither moves the tip.
+/// Additional factor on the amplitude while the finger touches something, because at walls the dither moves the tip.
 const TOUCHING: f64 = 0.7;
 
 /// Time constant with which the factor [`TOUCHING`] begins and ceases to act, s.

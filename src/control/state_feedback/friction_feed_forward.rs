@@ -7,7 +7,8 @@ use nalgebra::Vector4;
 /// would cause chatter.
 const CREEP: f64 = 0.001;
 
-/// share sat(v / creep) (coulomb + conduit t), N at the tendon.
+/// Computes the pull that is fed forward, N at the tendon: share sat(v / creep) (coulomb + conduit t), where t is the
+/// tension.
 ///
 /// v is the observed speed. If v were the speed of the reference, a limit cycle would remain at high stiffness because
 /// of friction. The observer must receive the pull without this feed-forward. Otherwise the disturbance that it

@@ -50,8 +50,8 @@ pub(crate) struct ObserverDesign {
 /// R^T theta is the travel of the joint side. u is the pull, and d is the additional force on the motor.
 ///
 /// The links are described only by a triple integrator, and not by a model of their dynamics. A model of any part of
-/// the dynamics would interpret an external force as motion, and the damper would permanently oppose that motion.
-/// Without the state a, lambda would lag, and k times the lag would act as an additional mass.
+/// the dynamics would interpret an external force as motion, and the damper of the controller would permanently oppose
+/// that motion. Without the state a, lambda would lag, and k times the lag would act as an additional mass.
 #[derive(Clone, Debug)]
 pub(crate) struct TendonObserver {
     tendon: ElasticTendon,

@@ -1,10 +1,10 @@
 //! A stiffer spring during a fast motion of the reference.
 //!
 //! The gauges do not measure the friction of the pulleys. It holds the joints back: they lag the reference by about
-//! K_theta^-1 F, where F is the torque of the friction. After the motion they creep to their rest position, because
-//! pulleys on which the dither keeps the tendons sliding act like viscous friction. If the tip is close to the axis of
-//! joint 0, or the finger is nearly straight, K_theta is small in one direction. The lag is then larger than 5 % of a
-//! step of 5 mm.
+//! K_theta^-1 F, where F is the torque of the friction. After the motion they creep to their rest position: the dither
+//! keeps the tendons sliding on the pulleys, and the friction then acts like viscous friction. If the tip is close to
+//! the axis of joint 0, or the finger is nearly straight, K_theta is small in one direction. The lag is then larger
+//! than 5 % of a step of 5 mm.
 //!
 //! The additional stiffness is sigma R k R^T, a share of the stiffness that the tendons give the joints. In each
 //! direction, K_theta is a fraction of R k R^T. The additional stiffness adds sigma to this fraction in all directions.
@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 /// Largest share of R k R^T that the spring, the soft joint limits and the additional stiffness use together. With
 /// 0.68, steps of fingers with rotors of half the inertia did not settle in some poses.
 const SUPPORTED: f64 = 0.57;
-/// Largest sigma, as a fraction of the share that the spring uses. A limp finger stays limp.
+/// Largest sigma, as a fraction of the share that the spring uses. So a finger with zero stiffness stays limp.
 const LARGEST_RATIO: f64 = 0.5;
 /// Largest additional torque, as a fraction of the sum of the magnitudes of the torques that the four tendons exert on
 /// the joint at the pretension. An object in the way of the finger meets at most this additional torque.

@@ -173,7 +173,7 @@ impl TensionDither {
         if wanted <= 0.0 {
             return Vector4::zeros();
         }
-        // The mean of 2 a sin^2 is a.
+        // The factor 2: the mean of a sin^2(omega t) is a / 2, and the filter below takes this mean.
         let deviation = 2.0 * self.common.dot(&(now - desired));
         state.measured += (phase * deviation - state.measured) * self.measuring;
         if burst < ENDED {

@@ -46,13 +46,13 @@ const REVERSED: f64 = 1e-5;
 /// Length that a motor pays out after its tendon has been taut, m.
 const GAP: f64 = 0.0004;
 
-/// Gain from the missing fraction of the pretension to the speed of the common stretch at 1000 Hz and above, 1/s.
+/// `SlackTakeUp::gain` at 1000 Hz and above, 1/s.
 const GAIN: f64 = 20.0;
 /// Largest pull in [`Phase::Touching`], while tendons are slack, in multiples of t_min. It must exceed the friction of
 /// a motor.
 const STRONGEST_SLACK: f64 = 2.0;
-/// In all phases except [`Phase::Touching`], the largest pull is this multiple of the pretension plus `STRONGEST_SLACK`
-/// times t_min.
+/// In all phases except [`Phase::Touching`], the largest pull is `STRONGEST` times the pretension, plus
+/// `STRONGEST_SLACK` times t_min.
 const STRONGEST: f64 = 1.5;
 
 /// A motor does not follow its target if its distance from the target exceeds this value, m.
@@ -63,7 +63,7 @@ const SMOOTHING: f64 = 0.003;
 /// Time constant of the low-pass filter for the decision whether a tendon pulls at all, s.
 const MORE_SMOOTHING: f64 = 0.02;
 
-/// The constant part of the take-up.
+/// The parameters of the take-up. Its state is [`Slack`].
 #[derive(Clone, Debug)]
 pub(crate) struct SlackTakeUp {
     period: f64,
@@ -74,7 +74,7 @@ pub(crate) struct SlackTakeUp {
     pretension: Vector4<f64>,
     /// Stretch of the tendons at the pretension, m.
     stretch: Vector4<f64>,
-    /// Gain from the missing fraction of the pretension to the speed of the common stretch, 1/s.
+    /// Speed of the common stretch, divided by the missing fraction of the pretension, 1/s.
     gain: f64,
     /// Pull of a motor that reverses, N.
     reversal: f64,
@@ -198,7 +198,7 @@ impl SlackTakeUp {
                 slack.taut_at[motor] -= tension / self.pretension[motor] * self.stretch[motor];
             }
         }
-        // A tendon whose tension rises from the first sample on came taut before its motor turned.
+        // If a tension rises from the first sample on, its tendon came taut at this travel, before the motor turned.
         slack.gauges.iter_mut().zip(&now.travel).for_each(|(gauge, &travel)| gauge.restart(travel));
         (slack.phase, slack.seconds) = (Phase::Touching, 0.0);
     }

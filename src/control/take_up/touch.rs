@@ -27,7 +27,8 @@ const UNCLIPPED: f64 = 1.75;
 /// by 1 plus this multiple of the fraction. The product is the standard deviation of the Gaussian noise.
 const PARTLY_CLIPPED: f64 = 1.1;
 
-/// The tare is at most this multiple of the noise above the smoothed tension. It falls if the smoothed tension falls.
+/// The tare exceeds the smoothed tension by at most this multiple of the noise. If the smoothed tension falls further
+/// below the tare, the tare falls too.
 const LOWER: f64 = 0.8;
 
 /// The gauge of one tendon. Tensions are in N.
@@ -51,7 +52,7 @@ pub(super) struct Gauge {
 }
 
 impl Gauge {
-    /// Converts the stored travel for another motor radius, with which every travel is multiplied by `longer`.
+    /// Converts the stored travel to another motor radius. `longer` is the new radius divided by the old one.
     pub fn scale_travel(&mut self, longer: f64) {
         self.onset *= longer;
     }
@@ -110,8 +111,8 @@ mod tests {
     const MINIMUM: f64 = 5.0;
     const STEP: f64 = 0.0244;
 
-    /// Returns the tension, N, that a gauge with this noise, N rms, shows in steps of a count. Without `negative` the
-    /// converter ends at zero tension.
+    /// Returns the tension that a gauge shows, N, rounded to a count of its converter. `noise` is in N rms. If
+    /// `negative` is false, the converter shows no tension below zero.
     fn shown(tension: f64, noise: f64, negative: bool, random: &mut Pcg64) -> f64 {
         let sample: f64 = StandardNormal.sample(random);
         let shown = ((tension + noise * sample) / STEP).round() * STEP;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Stiffness at servo rates of 1000 Hz and more, N/m. The rotor of the default motor then has a bandwidth of 20 Hz.
 const STIFFNESS: f64 = 40_000.0;
-/// Damping at these rates, N s/m.
+/// Damping at servo rates of 1000 Hz and more, N s/m.
 const DAMPING: f64 = 450.0;
 /// Integral gain relative to the stiffness, 1/s. The integral overcomes the friction of the motor.
 const INTEGRAL: f64 = 15.0;

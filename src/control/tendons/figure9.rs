@@ -1,4 +1,4 @@
-//! Figure 9: an integral of the tension error.
+//! Figure 9 of the report: an integral of the tension error.
 
 use crate::control::tendons::tension_integral::{TendonInput, TendonState, TensionIntegral};
 use nalgebra::Vector4;
@@ -6,8 +6,8 @@ use nalgebra::Vector4;
 /// t_d + K_TI/s (t_d - t) - K_delta v, with the desired tension t_d, the measured tension t and the speed v of the
 /// motor side.
 ///
-/// The figure has neither the feed-forward of t_d nor the damper. With the integral alone the loop is unstable at every
-/// rate.
+/// The figure contains only the integral. The feed-forward of t_d and the damper are additions of the library, because
+/// the loop is unstable at every rate with the integral alone.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure9 {
     pub integral: TensionIntegral,

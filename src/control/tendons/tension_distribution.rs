@@ -91,10 +91,10 @@ impl TensionDistribution {
 impl BoundedDistribution<'_> {
     /// Returns the smallest tensions, in the sense of eq. 20, for the joint torque tau, N cm.
     ///
-    /// For each tendon j there is a tau_g that puts it at t_min. Tendon i then has the tension
+    /// For each tendon j there is a tau_g that puts tendon j at t_min. Tendon i then has the tension
     /// s (A_i - A_j q_i4/q_j4) + t_min q_i4/q_j4. Here s is the scale, and A = Q (tau, 0). Eq. 20 selects the largest
-    /// of these tau_g. This tau_g gives tendon i the largest of these tensions, so each of them must be at most t_max.
-    /// These conditions, one for each pair i, j, bound s.
+    /// of these tau_g, which gives tendon i the largest of these tensions. So the tension above must be at most t_max
+    /// for every pair i, j. These conditions bound s.
     #[inline]
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;

@@ -11,7 +11,7 @@ pub struct Description {
     pub text: &'static str,
     /// Part that the event concerns, as a word for a table; none if it concerns the whole finger.
     pub part: Option<&'static str>,
-    /// The meanings of the values that are used.
+    /// The meanings of the event's values, in their order. Unused values have no entry.
     pub values: &'static [ValueKind],
 }
 

@@ -1,4 +1,4 @@
-//! Data other than set points that a servo computes with, on its way from planners to the servo.
+//! Passes adjustments and gravity from planners to the servo, and corrects the last set point after an adjustment.
 
 use super::{Mailbox, ServoEnd};
 use crate::control::SetPoint;

@@ -16,9 +16,9 @@ pub(super) struct LastPath {
     pub extent: PathExtent,
 }
 
-/// Makes a change of a set point that leaves the stiffness as it is. If `path` changes the stiffness, the set point has
-/// the stiffness of the stiffest spring of the path while `change` runs. A check in `change` thus holds for the whole
-/// path, because the range of the damping narrows as the stiffness grows.
+/// Changes a set point. If `path` changes the stiffness, the set point has the stiffness of the path's stiffest spring
+/// while `change` runs, and `change` must not change the stiffness. So a check of the damping in `change` holds for the
+/// whole path, because the range of the damping narrows as the stiffness grows.
 pub(super) fn change_along<E>(
     path: Option<PathExtent>,
     set_point: &mut SetPoint,

@@ -139,11 +139,11 @@ impl PlannersEnd {
     }
 
     /// Returns the stiffness with which a path that comes after `sent` begins, and the stiffness that the path must
-    /// bring to the servo. The second value is the first one, or none: if the stiffness in force is changing along an
-    /// earlier path, the servo begins with the stiffness in force, and the path need not bring one. Without the
-    /// stiffness in the path, a stiffness that was sent just before the path would never come into force, because the
-    /// servo takes only the newest set point. The path would then begin with an older stiffness, for which the damping
-    /// was not checked.
+    /// bring to the servo. The second value is none if the stiffness in force is changing along an earlier path,
+    /// because the servo then begins with the stiffness in force. Otherwise both values are the same. If the path did
+    /// not bring this stiffness, a stiffness that was sent just before the path would never come into force, because
+    /// the servo takes only the newest set point. The path would then begin with an older stiffness, for which the
+    /// damping was not checked.
     fn begin_of_stiffness(&mut self, sent: &SentSetPoint) -> (Matrix6<f64>, Option<Matrix6<f64>>) {
         let changing = sent.path.is_some_and(|path| path.stiffness) && self.extent_ahead(sent.path).is_some();
         // While an earlier path changes the stiffness, `sent` already has the stiffness of the end of that path.
@@ -157,9 +157,9 @@ impl PlannersEnd {
         (begin.unwrap_or_else(|| self.reports.read().set_point.stiffness), begin)
     }
 
-    /// Returns the extent of the path that the finger still follows after the part `replaced` of the set point has been
-    /// replaced. Returns none after a new place, which ends the path, and after a new stiffness, which ends its change
-    /// of the stiffness.
+    /// Returns the extent of the path that [`last_path::change_along`] takes into account when a command replaces the
+    /// part `replaced` of the set point. Returns none for a new place, because it ends the path. Returns none for a new
+    /// stiffness too, because the path then no longer changes the stiffness.
     pub(super) fn path_kept_by(&mut self, replaced: Replaced) -> Option<PathExtent> {
         match replaced {
             Replaced::Other => self.path_ahead(),

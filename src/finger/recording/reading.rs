@@ -87,7 +87,7 @@ impl Recording {
         if cycles.len() != header.cycles {
             return Err(RecordingError::Short { file, found: cycles.len(), expected: header.cycles });
         }
-        // Without an offset, the last cycle gets the time at which the file was written.
+        // If the file has no clock offset, the last cycle counts as having begun when the file was written.
         let last = cycles.last().map_or(0, |cycle| cycle.began);
         let written = header.written.saturating_mul(1_000_000_000) as i64;
         let clock_offset = header.clock_offset.unwrap_or(written.wrapping_sub(last as i64));

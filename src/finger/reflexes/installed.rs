@@ -7,7 +7,7 @@ use super::server::ReflexServer;
 use crate::model::FingerNumber;
 use crate::realtime::{Input, LockedMemory, Mutex, triple_buffer};
 
-/// The planners' end.
+/// The planners' end of a finger's rules.
 pub struct Reflexes(Mutex<Installed>);
 
 struct Installed {
@@ -29,7 +29,7 @@ pub fn reflexes(finger: FingerNumber, bulletin: &Bulletin) -> (Reflexes, ReflexS
 }
 
 impl Reflexes {
-    /// Installs a rule, and returns its number. Returns none if the finger already has `MOST_RULES`.
+    /// Installs a rule, and returns its number. Returns none if the finger already has `MOST_RULES` rules.
     pub fn install(&self, reflex: Reflex) -> Option<u32> {
         let installed = &mut *self.0.lock();
         let place = installed.rules.0.iter_mut().find(|place| place.is_none())?;

@@ -11,7 +11,8 @@ pub struct Reflex {
     pub condition: Condition,
     /// What the finger does.
     pub reaction: Reaction,
-    /// If several rules fire in one cycle, the one with the highest priority is first, and the others wait.
+    /// If several rules fire in one cycle, the one with the highest priority reacts first. The others wait for the next
+    /// cycles.
     pub priority: u8,
     /// Time after a reaction in which the rule does not fire again, s, 0 to 3600. A rule whose condition stays true
     /// fires again after this time. If the time is 0, the condition must become false before the rule fires again.
@@ -39,18 +40,18 @@ pub enum Condition {
     TensionAbove(f64),
     /// The tension of any tendon is below this value, N.
     TensionBelow(f64),
-    /// The angle of a joint, 0 to 2, is above a value, rad.
+    /// The angle of a joint is above a value.
     JointAbove {
-        /// The joint.
+        /// The joint, 0 to 2.
         joint: usize,
-        /// The angle.
+        /// The angle, rad.
         angle: f64,
     },
-    /// The angle of a joint, 0 to 2, is below a value, rad.
+    /// The angle of a joint is below a value.
     JointBelow {
-        /// The joint.
+        /// The joint, 0 to 2.
         joint: usize,
-        /// The angle.
+        /// The angle, rad.
         angle: f64,
     },
     /// The board has not replied for this time, s.
@@ -61,8 +62,8 @@ pub enum Condition {
     PlannerSilent(f64),
 }
 
-/// What a finger does when a rule fires. A set point that a reaction changes is in force until the planner sends
-/// another one, or until the planner's last set point would have expired. A path or a motion in progress ends.
+/// What a finger does when a rule fires. The set point of a reaction is in force until the planner sends another one,
+/// or until the planner's last set point would have expired. A path or a motion in progress ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reaction {

@@ -53,7 +53,7 @@ struct RuleState {
     waiting: bool,
     /// The first period in which the rule may fire again.
     ready: u64,
-    /// The count of another finger's events that the rule has read last.
+    /// The count of another finger's events when the rule was last evaluated.
     seen: u32,
 }
 

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use thiserror::Error;
 
-/// Largest number of controllers whose sources are kept. A servo names a controller soon after it is announced, or
-/// never.
+/// Largest number of controllers whose sources are kept. If a servo uses a controller, it begins to do so soon after
+/// the source of the controller was recorded. So the oldest sources can be dropped.
 const MOST_SOURCES: usize = 4096;
 
 /// If more controllers than this number are ready, the next cycle drops those that it does not name.
@@ -151,8 +151,9 @@ impl ContinuousReplay {
     /// Recomputes a cycle.
     ///
     /// # Errors
-    /// Returns an error if the cycle contains a number that no servo can have recorded, if it is out of order, or if
-    /// the controller computes a torque that is not finite.
+    /// Returns an error if the cycle contains a number that no servo can have recorded, if the cycle is out of order,
+    /// if no controller can be constructed from a source that the cycle needs, or if the controller computes a torque
+    /// that is not finite.
     pub fn cycle(&mut self, record: &CycleRecord) -> Result<Recomputed, Unsound> {
         let cycle = record.cycle;
         let gap = self.advance(record)?;

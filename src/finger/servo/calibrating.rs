@@ -28,9 +28,9 @@ impl FingerServo {
     }
 
     /// Runs one step of the calibration, if there is one and a reply has arrived, and sets the finger's activity.
-    /// Returns the data that the servo used before, if this cycle is computed with other data. The data changes at the
-    /// first activity of the calibration. It also changes if the calibration ends without an activity, and planners
-    /// have replaced the data meanwhile.
+    /// Returns the data of the previous cycle if the servo computes this cycle with other data. This happens in two
+    /// cases: the calibration gives its first activity, or the calibration ends without an activity after planners have
+    /// replaced the data.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -56,8 +56,8 @@ impl FingerServo {
         previous
     }
 
-    /// Returns to the stage before a calibration that has not moved the finger. If planners have replaced the data with
-    /// which the servo computes, returns the previous data.
+    /// Enters the stage that the finger had before a calibration that gave no activity. If planners have replaced the
+    /// data with which the servo computes, returns the previous data.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
         // Set points that planners sent meanwhile had no effect, so the next change of a set point must not start from
         // one of them. In a new spring phase, the next change starts from the set point that the servo holds.

@@ -3,8 +3,9 @@
 use crate::finger::Stage;
 use crate::finger::{Adjustable, CalibrationRun};
 
-/// A calibration. `before` is what the finger had before the calibration. Except for the stage, the finger keeps it
-/// until the routine gives its first activity. Afterwards `before` is none.
+/// A calibration. `before` is the state of the finger before the calibration. Until the routine gives its first
+/// activity, the servo computes with the data of `before`, although the finger is already in another stage. Afterwards
+/// `before` is none.
 pub(super) struct Calibrating {
     pub run: CalibrationRun,
     pub before: Option<Before>,

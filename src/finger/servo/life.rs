@@ -60,7 +60,8 @@ impl FingerServo {
                     self.report.expired_phase = None;
                     self.report.expired = false;
                     self.supervision.begin();
-                    // The detectors run in the next cycle, but a planner may wait for the arrival before that.
+                    // The detectors do not run until the next cycle. A planner may wait for the arrival before then,
+                    // so the arrival is reported now.
                     self.report.arrival = self.events.restart_detectors(self.report.set_point);
                     self.enter(Stage::Running);
                 }

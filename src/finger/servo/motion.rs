@@ -123,7 +123,7 @@ impl FingerServo {
                 let held = SetPoint::hard_finger(joints, kx);
                 self.follow(held, self.report.set_point_number);
                 self.motion.rest(joints);
-                // Later changes of planners start from the pose that is held.
+                // The changes that planners send later start from the pose that is held.
                 self.report.expired_phase = Some(self.report.springs);
                 self.report.springs += 1;
             }

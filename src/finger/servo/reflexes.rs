@@ -64,9 +64,9 @@ impl FingerServo {
     /// Begins a spring phase (`FingerReport::springs`) with the set point in force. Planners number their next set
     /// points from the number of this set point on. They may already have given these numbers to set points that the
     /// finger did not follow. A renewal of validity that was sent in the previous phase is therefore discarded: it
-    /// could renew the validity of a new set point with the same number. If the previous phase began because a set
-    /// point expired, the finger has until now also accepted late set points of the phase before it
-    /// (`FingerReport::expired_phase`). This call ends that.
+    /// could renew the validity of a new set point with the same number. If a set point has expired, the finger may
+    /// until now have accepted late set points of the phase that ended at the expiry (`FingerReport::expired_phase`).
+    /// After this call it discards them.
     fn begin_phase(&mut self) {
         self.report.springs += 1;
         self.report.expired_phase = None;

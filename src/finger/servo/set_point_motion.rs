@@ -16,7 +16,7 @@ pub(super) struct SetPointMotion {
     pub expiry: Option<Expiry>,
     /// The newest renewal of a validity. Its set point may not have taken effect yet.
     pub renewal: Option<Renewal>,
-    /// The spring phase and the number of the set point that a planner sent last.
+    /// The spring phase (`FingerReport::springs`) and the number of the set point that a planner sent last.
     planned: (u32, u32),
 }
 
@@ -61,8 +61,8 @@ impl SetPointMotion {
     /// only corrected it. `in_force` is the number of the set point in force.
     pub fn note_planned(&mut self, sent: &SentSetPoint, in_force: u32) -> bool {
         let planned = (sent.spring, sent.planned);
-        // The library may also have corrected a set point that the servo set itself, or one of the previous phase. The
-        // correction then started from the set point in force, so `sent.planned` equals `in_force`.
+        // The library may also have corrected a set point that the servo set itself, or a set point of the previous
+        // spring phase. The correction then started from the set point in force, so `sent.planned` equals `in_force`.
         let new = planned != self.planned && sent.planned != in_force;
         self.planned = planned;
         new

@@ -10,9 +10,10 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct TouchReading {
-    /// Whether the board has reported this element since open and since its last reset, and could read it then.
-    /// Otherwise the other fields are 0. A recovery from a fault of the line counts as a reset. A reset is noticed at
-    /// the recovery of the finger.
+    /// Whether the board has reported this element since open and since the last reset of the board, and could read the
+    /// element at the newest of these reports. Otherwise the other fields are 0. A reset of the board makes the
+    /// readings invalid only when the finger recovers. A recovery from a fault of the line or of the port counts as a
+    /// reset.
     pub valid: bool,
     /// Whether something presses the element.
     pub pressed: bool,

@@ -59,8 +59,8 @@ fn has_shape_of(array: &Array, values: &[Value]) -> bool {
         })
 }
 
-/// Replaces the numbers of an array that has the shape of `values`. Where the new number equals the one in `present`,
-/// it stays as it is written.
+/// Replaces the numbers of an array that has the shape of `values`. A number in the array stays as it is written if the
+/// new number equals the corresponding number in `present`.
 fn fill<'a>(array: &mut Array, values: Vec<Value>, present: &mut impl Iterator<Item = &'a f64>) {
     for (place, value) in values.into_iter().enumerate() {
         match (array.get_mut(place), value) {

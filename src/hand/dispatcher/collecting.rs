@@ -1,7 +1,8 @@
 //! The thread that collects timings and records from the servos, so that nothing is lost while no planner calls. When a
-//! finger faults and a folder is configured, this thread starts another one that writes the finger's black box. It also
-//! publishes what it collects to readers of telemetry. While the planner runs, this thread allocates memory only for a
-//! black box and when a reader attaches, so that the hand keeps working if the planner is out of memory.
+//! finger faults and a folder is configured, this thread starts another one that writes the finger's black box. The
+//! collecting thread also publishes what it collects to readers of telemetry. While the planner runs, the collecting
+//! thread allocates memory only for a black box and when a reader attaches, so that the hand keeps working if the
+//! planner is out of memory.
 
 use crate::finger::Recording;
 use crate::hand::black_box_file::save_at_fault;

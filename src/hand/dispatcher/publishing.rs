@@ -33,8 +33,8 @@ pub struct Publishing {
     events: MergedEvents,
     object: Option<ObjectView>,
     members: Arc<Vec<Member>>,
-    /// For each finger, an empty outlet. A publication exchanges this outlet for the one in which the finger's black box
-    /// has collected records, and empties that outlet.
+    /// For each finger, an empty outlet. A publication exchanges this outlet for the one in which the finger's black
+    /// box has collected records, and empties that outlet.
     outlets: Vec<Outlet>,
     /// For each finger, the number of the next controller to publish.
     controllers: Vec<u32>,

@@ -16,11 +16,11 @@ pub enum PathError {
         /// The largest number of poses.
         most: usize,
     },
-    /// The time for which a set point is valid is not usable.
+    /// A set point cannot be valid for the given time.
     #[error("a set point cannot be valid for {0} s: send 0 for the configured time, or up to 3600 s")]
     Valid(f64),
-    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the time before it, which is 0 for
-    /// the first pose.
+    /// A time is NaN, above the longest permitted time, or less than 1 ms later than the time before it. For the first
+    /// pose, the time before it is 0.
     #[error(
         "the time of pose {pose} of the path of finger {finger} is {time} s after the beginning of the path: send a \
          time of at most {most} s that is at least {least} s later than {} ({before} s)",
@@ -74,7 +74,7 @@ pub enum PathError {
         pose: usize,
         /// Number of the joint, 0 to 2.
         joint: usize,
-        /// The largest excursion, rad.
+        /// The extreme angle of the joint in this part of the path, rad. It is below `low` or above `high`.
         value: f64,
         /// The lower joint limit, or the angle at which the path begins if this angle is lower, rad.
         low: f64,
@@ -121,10 +121,11 @@ pub enum PathError {
         pieces: usize,
     },
     /// While the path was computed, the finger was recovered or calibrated, its set point expired, a reflex reacted, or
-    /// the inhibition of a reflex ended.
+    /// the inhibition ended. The inhibition is the time after a reaction in which the finger does not follow its
+    /// planner.
     #[error(
         "the path of finger {0} was not sent, because while it was computed, the finger was recovered or calibrated, \
-         its set point expired, a reflex reacted, or the effect of a reflex ended: send the path again"
+         its set point expired, a reflex reacted, or the inhibition after a reflex ended: send the path again"
     )]
     Moved(FingerNumber),
 }

@@ -32,8 +32,8 @@ pub enum ReflexError {
     NoSuchJoint {
         /// The finger.
         finger: FingerNumber,
-        /// The joint.
-        joint: usize,
+        /// The joint that the planner has passed.
+        joint: i64,
     },
     /// The other finger of the rule is the finger itself.
     #[error(

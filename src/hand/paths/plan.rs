@@ -109,9 +109,9 @@ impl Admission {
         if [start.rates, start.accelerations, start.jerk].iter().all(|derivative| derivative.amax() == 0.0) {
             return None;
         }
-        // The path begins with zero acceleration and jerk. After a step of the set point, the filter of the set point
-        // can give a large acceleration and jerk, which end by themselves. So the path does not begin exactly with the
-        // servo's reference, and the servo filters this difference.
+        // After a step of the set point, the filter of the set point can give the reference a large acceleration and
+        // jerk, which decay by themselves. The path therefore begins with zero acceleration and jerk. The servo filters
+        // the difference between the servo's reference and the beginning of the path.
         let start = Start { accelerations: Vector3::zeros(), jerk: Vector3::zeros(), ..start };
         // A constant deceleration to rest within BRAKING ends at this place.
         let place = start.place + start.rates * (BRAKING / 2.0);

@@ -20,7 +20,7 @@ const PIECES_PER_POSE: [usize; 7] = [4, 8, 16, 32, 64, 128, 256];
 const STEP: f64 = 2e-3;
 
 impl Admission {
-    /// Computes the pieces of a path whose tip passes `tips`, and the number of pieces for each pose.
+    /// Computes the pieces of a path on which the tip passes through `tips`, and the number of pieces for each pose.
     pub(super) fn tip_pieces(&self, start: &Start, tips: &[Knot]) -> Result<(Vec<Piece>, usize), PathError> {
         let path = spline(&self.start_of_tip(start), tips);
         let most = MOST_PIECES / tips.len();

@@ -112,7 +112,7 @@ fn a_restart_of_a_board_with_tactile_elements_is_counted() {
 }
 
 /// A finger that the servo takes and that faults at once must not have more recoveries than repairs, so its repair
-/// is counted before the servo gets it. A finger that the servo does not take has no repair.
+/// is counted before the servo gets the finger. If the servo does not take the finger, the repair is not counted.
 #[test]
 fn a_repair_is_counted_exactly_if_the_servo_can_take_the_finger() {
     let (_servo, repair_end) = link_handover();

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// `[finger.events]`. Without a bound there are no events of its kind.
+/// `[finger.events]`. A bound that is `None` causes no events.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredEvents {
-    /// Largest difference of any joint from the set point at which the finger counts as arrived, degrees.
+    /// The finger counts as arrived if no joint differs from the set point by more than this, degrees.
     pub arrived_degrees: f64,
-    /// Largest motion of any joint at which the finger counts as settled, degrees.
+    /// The finger counts as settled if no joint moves by more than this during `settled_ms`, degrees.
     pub settled_degrees: f64,
     /// Time for which no joint may move more than `settled_degrees`, ms.
     pub settled_ms: f64,
@@ -20,8 +20,8 @@ pub struct ConfiguredEvents {
     pub tension_below: Option<f64>,
     /// Upper bound of the force at the fingertip, N.
     pub force_above: Option<f64>,
-    /// Upper bound of the ratio of the force along the surface of an object to the force normal to it. If the bound is
-    /// below the coefficient of friction, the ratio reaches it before the fingertip slips.
+    /// Upper bound of the tangential contact force divided by the normal contact force. A bound below the coefficient
+    /// of friction is exceeded before the fingertip slips.
     pub slip_friction: Option<f64>,
 }
 

@@ -1,7 +1,6 @@
 //! `[finger.friction]`: the controller's model of the friction of a finger. The true values of the simulated finger are
-//! in `[finger.simulation]`. The defaults here describe the default finger there; `conduit` corresponds to
-//! `simulation.shaft_friction`. An experiment with a wrong model sets
-//! different values in the two places.
+//! in `[finger.simulation]`. The defaults of this table describe the default simulated finger. `conduit` corresponds to
+//! `simulation.shaft_friction`. An experiment with a wrong model sets different values in the two tables.
 
 use serde::{Deserialize, Serialize};
 

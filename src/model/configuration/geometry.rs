@@ -20,8 +20,8 @@ impl Default for ConfiguredGeometry {
     fn default() -> Self {
         Self {
             links: [3.556, 5.080, 4.000],
-            // Entry (2, 4) is -1.09, because eq. 14 has -r24. The report prints +1.09. With +1.09, the matrix of R and
-            // the report's ghost row of ones is singular.
+            // Entry (2, 4) is -1.09, because eq. 14 has -r24. The report prints +1.09. With +1.09, the 4 x 4 matrix
+            // that consists of R and the report's ghost row of ones would be singular.
             r: [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]],
             ghost_row: None,
             motor_radius: [0.0475; 4],

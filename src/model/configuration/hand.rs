@@ -84,8 +84,8 @@ pub enum PeriodClock {
 pub struct ConfiguredHand {
     /// The fingers that the hand has: one, two or three. Calls for another finger are refused.
     pub fingers: Fingers,
-    /// The ports among which the library looks for the boards of `finger.board`. A * in the last part of a path stands
-    /// for any text.
+    /// The ports at which the library looks for the boards that `finger.board` names. A * in the last part of a path
+    /// stands for any text.
     pub search_ports: Vec<String>,
     /// Rate of every finger servo, Hz: 500 to 5000. No gains are known that keep a finger stable at a much lower rate.
     pub rate: f64,

@@ -1,8 +1,7 @@
 //! The types of a hand's configuration, with a default for every value. The defaults describe the finger of the report,
 //! with plausible values for what the report omits. Each table of the configuration file, except `[serve]` and
-//! `[remote]`, has a Rust file here, and each
-//! key is a field of the table's type. `[finger]` itself is in this file. The layer `hand` reads the values from a
-//! file. `model/validation.rs` checks them.
+//! `[remote]`, has a Rust file here, and each key is a field of the table's type. `[finger]` itself is in this file.
+//! The layer `hand` reads the values from a file. `model/validation.rs` checks them.
 
 mod board_number;
 mod contact;
@@ -153,8 +152,8 @@ impl Configuration {
         own_or(self.fingers[finger.index()].address, finger)
     }
 
-    /// Returns the transformation from the finger's frame (Figure 8), cm, to the palm's. By default two fingers are
-    /// side by side, and the thumb faces them.
+    /// Returns the transformation from the finger's frame (Figure 8) to the palm's frame. Lengths are in cm. By default
+    /// two fingers are side by side, and the thumb faces them.
     #[must_use]
     pub fn finger_to_palm(&self, finger: FingerNumber) -> Isometry3<f64> {
         let (base, turn) = match finger {
@@ -176,7 +175,7 @@ impl Configuration {
 }
 
 fn own_or(configured: u8, finger: FingerNumber) -> u8 {
-    // The conversion cannot fail, because a hand has three fingers.
+    // The conversion changes no value, because a hand has three fingers.
     if configured == 0 { finger.get() as u8 } else { configured }
 }
 

@@ -13,14 +13,14 @@ pub struct ConfiguredMotion {
     /// Largest jerk of a joint on a path, rad/s^3.
     pub jerk: f64,
     /// Period of the planner's set points, ms. The motion to each set point is spread over three such periods, or more
-    /// if the set point is far. A period below 10 ms acts as 10 ms. Without it set points are not interpolated.
+    /// if the set point is far. A period below 10 ms acts as 10 ms. With `None`, set points are not interpolated.
     pub interpolate_ms: Option<f64>,
-    /// Time for which a set point is valid, ms. Without it set points do not expire.
+    /// Time for which a set point is valid, ms. With `None`, set points do not expire.
     pub valid_ms: Option<f64>,
     /// The reaction to a set point that has expired.
     pub on_expiry: ExpiryReaction,
     /// Time for which a finger holds its pose after its set point has expired, ms. Then it faults, and its board goes
-    /// to the end state. Without it the finger holds its pose indefinitely.
+    /// to the end state. With `None`, the finger holds its pose indefinitely.
     pub end_state_ms: Option<f64>,
     /// Stiffness in every direction with which a finger holds its pose after its set point has expired, N/cm.
     pub expired_stiffness: f64,

@@ -43,7 +43,7 @@ pub struct ConfiguredSimulation {
     /// to the Coulomb friction (Stribeck curve).
     pub stiction_ratio: f64,
     /// Hardening h of the tendons, 0 to 0.9. The local stiffness is (1 - h) `tendon_stiffness` without tension, and
-    /// rises in proportion to the tension to (1 + h) `tendon_stiffness` at `tendon.maximum`.
+    /// rises linearly with the tension to (1 + h) `tendon_stiffness` at `tendon.maximum`.
     pub hardening: f64,
     /// Creep of the tendons: the length that creep adds in the long run, divided by the elastic stretch.
     pub creep: f64,

@@ -1,4 +1,4 @@
-//! The refusal of the value of a key.
+//! The error for a configuration key whose value is refused.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! The coefficients of a piece that has given motions at its ends.
+//! Computes the coefficients of a piece of a path from its places and motions at both ends.
 
 use crate::model::path::bounds::COEFFICIENTS;
 use nalgebra::{Matrix2x3, Vector3};

@@ -46,7 +46,7 @@ impl Piece {
     /// Returns the motion at `time`, s, counted from the beginning of the path.
     pub fn at(&self, time: f64) -> PieceMotion {
         let part = (time - self.begin) / self.length;
-        // Horner's scheme for the polynomial and for its n-th derivatives, divided by n factorial.
+        // Horner's scheme. At its end, sums[n] is the polynomial's n-th derivative by `part`, divided by n factorial.
         let mut sums = [Vector3::zeros(); 5];
         for coefficient in self.coefficients.iter().rev() {
             for order in (1..5).rev() {

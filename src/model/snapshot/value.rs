@@ -1,5 +1,5 @@
-//! The copy of a value. A format needs code only for this one type, and not for each type of
-//! which there are copies.
+//! The copy of a value. The values of several large types are copied to this one type. So a format needs code only for
+//! this type, and not for each type that is copied.
 
 use serde::ser::{Error, SerializeStruct, SerializeStructVariant, SerializeTuple};
 use serde::{Serialize, Serializer};

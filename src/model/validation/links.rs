@@ -31,7 +31,7 @@ impl ConfiguredFinger {
     pub(super) fn check_simulated_links(&self) -> Result<(), Unusable> {
         let (true, Ok(tendons)) = (self.simulated(), self.true_tendons()) else { return Ok(()) };
         let simulation = &self.simulation;
-        // N/cm times cm^2 is N cm.
+        // The moment arms are in cm. N/cm times cm^2 is N cm, which the factor 0.01 converts to N m.
         let stiffness = Vector4::from(simulation.tendon_stiffness) * (0.01 * STIFFEST * (1.0 + simulation.hardening));
         let of_tendons = tendons.r * Matrix4::from_diagonal(&stiffness) * tendons.r.transpose();
         let of_stops = Matrix3::from_diagonal_element(STOP_STIFFNESS * STEP * STEP + 2.0 * STEP * STOP_DAMPING);

@@ -5,8 +5,9 @@ use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::Vector4;
 
 impl ConfiguredFinger {
-    /// Checks that every motor can pull its tendon to the pretension against friction, also when it is warm. Otherwise
-    /// the finger could give no joint torque, or would overheat at rest.
+    /// Checks that the torque limit and the continuous torque of every motor suffice to pull its tendon to the
+    /// pretension against friction. Otherwise the finger could give no joint torque, or its motors would overheat at
+    /// rest.
     pub(super) fn check_pretension(&self) -> Result<(), Unusable> {
         let Ok(tendons) = self.tendons() else { return Ok(()) };
         let past_conduit = Vector4::from(self.friction.conduit).add_scalar(1.0);

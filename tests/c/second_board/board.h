@@ -49,7 +49,7 @@ enum { MOTION_MOST = 2000000 };
 /* Handles one byte from the line. */
 void receive(struct board *board, uint8_t byte, int64_t now);
 
-/* Ends the motion when the watchdog has tripped, and a hold when its time has expired. */
+/* Trips the watchdog when no Command has arrived in time, and ends a hold when the time of the hold is over. */
 void watch_time(struct board *board, int64_t now);
 
 #endif

@@ -39,7 +39,7 @@ static int open_line(int *line, int *far_end)
     *line = posix_openpt(O_RDWR | O_NOCTTY);
     if (*line < 0 || grantpt(*line) < 0 || unlockpt(*line) < 0)
         return -1;
-    /* The far end stays open here too, or the line would report a hang-up whenever no host has it open. */
+    /* This process keeps the far end open too. Otherwise the line would report a hang-up while no host is connected. */
     *far_end = open(ptsname(*line), O_RDWR | O_NOCTTY);
     if (*far_end < 0 || tcgetattr(*far_end, &raw) < 0)
         return -1;
@@ -71,9 +71,9 @@ static int run(unsigned address)
         if (poll(waits, 2, 1) < 0 && errno != EINTR)
             return fail("poll");
 
-        /* Limits how far the finger moves before the host's next Command, and in one wake-up of the board. A real
-           finger does not wait. On a busy machine, however, Commands and wake-ups are later than any control loop
-           tolerates. */
+        /* Limits how long the finger moves before the host's next Command, and in one wake-up of the board. A real
+           finger has no such limit. The simulated one needs it, because Commands and wake-ups on a busy machine are
+           later than any control loop tolerates. */
         int64_t now = nanoseconds();
         int64_t motion = now - then < MOTION_MOST ? now - then : MOTION_MOST;
         if (board.state == ENABLED) {

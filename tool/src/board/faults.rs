@@ -129,7 +129,7 @@ impl Trouble {
         Ok(Some(Trouble::Finger(finger, defect)))
     }
 
-    /// Causes the fault and returns the answer. `address` maps the number of a finger to its address.
+    /// Causes or ends the fault, and returns the answer. `address` maps the number of a finger to its address.
     pub fn apply(&self, port: &SimulatedPort, seed: u64, address: impl Fn(u8) -> Option<u8>) -> String {
         let finger = |number: u8, act: &dyn Fn(&mut SimulatedFinger) -> bool| match address(number)
             .and_then(|address| port.with_finger(address, |finger| act(finger)))

@@ -2,8 +2,8 @@
 
 use super::faults::Trouble;
 use super::manual;
-use sun2xp::model::Shown;
 use sun2xp::model::configuration::Surface;
+use sun2xp::model::{Counted, Shown};
 use sun2xp::nalgebra::Vector3;
 use sun2xp::simulated::SimulatedFinger;
 
@@ -91,7 +91,8 @@ impl Action {
             ("free", []) => Ok(Action::Free),
             ("state", []) => Ok(Action::State),
             ("force" | "wall" | "ball" | "hold" | "free" | "turn" | "tighten" | "hang" | "state", _) => {
-                Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
+                let given = Counted(numbers.len() as u64, "number", "numbers");
+                Err(format!("{name} does not take {given}; see sun2xp board --help"))
             }
             _ => Err(format!("{name} does not take these words; see sun2xp board --help")),
         }
@@ -168,6 +169,7 @@ mod tests {
     fn wrong_orders_are_named() {
         for (line, part) in [
             ("force 1 1 2", "does not take 2 numbers"),
+            ("force 1 1", "does not take 1 number;"),
             ("force one 1 2 3", "one is not the number of a finger"),
             ("force 1 1 2 x", "x is not a number"),
             ("force 1 1 2 NaN", "not finite"),

@@ -1,4 +1,5 @@
-//! The passivity of the fingertip.
+//! The passivity of the fingertip, a number from `Admittance::passivity`. The tip is passive at a frequency at which
+//! this number is not negative.
 
 use super::sample::{degrees, pose};
 use super::{Arguments, Searched};
@@ -11,7 +12,7 @@ use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::{Matrix3, Vector3};
 use sun2xp::stability::{OneCycleMap, Rest};
 
-/// Number of poses without --samples.
+/// Number of poses if --samples is not given.
 const POSES: usize = 4;
 
 /// Lowest and highest frequency, Hz, and the number of steps between them. Every step has the same ratio.
@@ -119,7 +120,7 @@ fn poses(finger: &ConfiguredFinger, number: usize) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// Returns the digits of `index` in `base`, mirrored at the point: a number from 0 to 1.
+/// Returns the digits of `index` in `base`, mirrored at the radix point: a number from 0 to 1.
 fn radical_inverse(mut index: usize, base: usize) -> f64 {
     let (mut inverse, mut digit) = (0.0, 1.0 / base as f64);
     while index > 0 {

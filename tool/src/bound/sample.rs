@@ -1,4 +1,4 @@
-//! Samples of the search, as text and for other programs.
+//! Samples of the search for the bound, as text and for other programs.
 
 use serde::Serialize;
 use sun2xp::control::Law;

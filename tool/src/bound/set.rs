@@ -18,7 +18,7 @@ const SAMPLES_OF_NOMINAL: usize = 2000;
 /// those of the nominal plant without walls. A few almost straight poses with a very slow motion are permitted.
 const USELESS: f64 = 0.1;
 
-/// The failure for a set without a plant, which no arguments give.
+/// The error text for an empty set of plants. No arguments lead to an empty set.
 const NO_PLANT: &str = "the set of plants is empty. This is a defect of sun2xp: please report it";
 
 /// The bounds of all plants.

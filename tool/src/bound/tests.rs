@@ -1,5 +1,5 @@
-//! What `sun2xp bound --write` stores. The tests search less than the tool does with the default options, which takes
-//! minutes.
+//! What `sun2xp bound --write` stores. With the default options, the search of the tool takes minutes. The tests search
+//! less.
 
 use super::{Arguments, conclude, run};
 use std::io;

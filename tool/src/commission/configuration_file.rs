@@ -10,7 +10,7 @@ use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
 
 /// Largest configuration file, bytes.
 pub const LARGEST: u64 = 1 << 20;
-/// The beginning of every comment of this tool. An older one above the same key is replaced.
+/// Every comment of this tool begins with this text. A new comment replaces an older one above the same key.
 const MARK: &str = "# commission ";
 /// Number of significant digits of a number.
 const DIGITS: usize = 6;

@@ -98,7 +98,7 @@ pub fn gauges(desk: &mut Desk) -> Result<Outcome, Failure> {
 fn name_the_order(outcome: &mut Outcome, seen: [usize; 4], order: [usize; 4]) {
     let bent = outcome.wrong.iter().any(|wrong| matches!(wrong, Wrong::GaugeNotLinear(..)));
     if repeats(seen) || (is_exchange(order) && bent) {
-        // A weight may have hung on another tendon. Then the lines are wrong too.
+        // A weight may have hung on a tendon other than the requested one. Then the lines are wrong too.
         outcome.wrong = vec![Wrong::GaugesUnclear(seen)];
         outcome.found.clear();
     } else if is_exchange(order) {

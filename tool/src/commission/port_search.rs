@@ -1,4 +1,4 @@
-//! Finds the board of a finger that has none in the configuration.
+//! Finds the board of a finger for which the configuration names no board.
 
 use std::path::PathBuf;
 use sun2xp::hand::{FoundFinger, found_at, search_boards};
@@ -64,7 +64,7 @@ pub fn search(patterns: &[String], baud: u32, finger: FingerNumber, taken: &[Tak
 fn choose(answers: Vec<Answer>, finger: FingerNumber, taken: &[Taken]) -> Result<Chosen, String> {
     let (others, free): (Vec<Answer>, Vec<Answer>) =
         answers.into_iter().partition(|answer| taken.contains(&(answer.number(), answer.found.address)));
-    // A board can have several fingers. The right one is the one whose address is the number of this finger.
+    // If several free fingers answer, the right one is the one whose address is the number of `finger`.
     let same: Vec<&Answer> = free.iter().filter(|answer| i32::from(answer.found.address) == finger.get()).collect();
     let (answer, reason) = match (&free[..], &same[..]) {
         ([], _) if others.is_empty() => {

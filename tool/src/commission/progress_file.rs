@@ -16,7 +16,7 @@ use sun2xp::model::ShownPath;
 /// Largest file that is read, bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// The last attempt of a step, which has passed or has not.
+/// The last attempt at a step, whether the step passed or not.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Done {
     /// Date and time, UTC.

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use sun2xp::calibration::{Findings, Obstacle, Task, Zeros};
 use sun2xp::model::configuration::ZeroingMethod;
 
-/// Permitted tension at rest as a part of the intended one.
+/// Permitted range of the tension at rest divided by the intended tension.
 const TAUT: (f64, f64) = (0.75, 1.3);
 
 /// Time for which the noise of the gauges is measured, s.

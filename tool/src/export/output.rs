@@ -60,10 +60,11 @@ impl Output {
         }
     }
 
-    /// Gives a file its name. Returns the path.
+    /// Gives a file its name. Returns the path, or `None` for standard output.
     ///
     /// # Errors
-    /// Returns an error if somebody has made a file at this path meanwhile, or the error that the system reports.
+    /// Returns an error if `force` is false and somebody has made a file at this path meanwhile, or if the system
+    /// reports an error.
     pub fn place(self, force: bool) -> Result<Option<PathBuf>, Failure> {
         let Self::File { path, target, mut file } = self else { return Ok(None) };
         let placed = if force { file.replace(&target) } else { file.place_at_free(&target) };

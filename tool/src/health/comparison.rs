@@ -18,8 +18,8 @@ const TENSION: f64 = 0.25;
 const NOISE: (f64, f64) = (2.0, 0.05);
 /// Largest rise of the heat of a motor at rest, relative to the heat that it bears continuously.
 const HEAT: f64 = 0.25;
-/// Friction may rise by a factor, the first number, and in addition by a value: the second number for motors and
-/// joints, N cm, and the third for conduits and pulleys.
+/// Friction may rise by the factor `FRICTION.0` and in addition by a value. This value is `FRICTION.1`, N cm, for
+/// motors and joints, and `FRICTION.2` for conduits and pulleys.
 const FRICTION: (f64, f64, f64) = (1.5, 0.03, 0.03);
 
 /// A change beyond its limit.
@@ -194,7 +194,7 @@ fn zeros(all: &mut Vec<Complaint>, before: &Vitals, configured: &ConfiguredFinge
             continue;
         }
         // With age a tendon only becomes longer, so its motor winds in farther. After the tendon was shortened, the
-        // motor winds in less far. An encoder slips either way.
+        // motor winds in less far. An encoder can slip in either direction.
         let (kind, advice) = match travel > 0.0 {
             true => (
                 "longer_tendon",

@@ -8,8 +8,8 @@ type Force = [f64; 3];
 /// The push on one finger.
 #[derive(Clone, Debug, Default)]
 pub struct Push {
-    /// The push that the person wants. As soon as no push is on its way, it is set to the push that acts, which is
-    /// different if the hand has not done the last push.
+    /// The push that the person wants. As soon as the outcome of every sent push is known, `wanted` becomes the push
+    /// that acts. This drops a wanted push that the hand has not done.
     pub wanted: Force,
     /// The newest push that the hand has done.
     acting: Force,

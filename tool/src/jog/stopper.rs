@@ -34,9 +34,9 @@ impl Stopper {
     }
 
     /// Calls `execute` for a command that was sent after `stops` stops. Returns none if a later stop or the end has
-    /// dropped the command. `execute` gets a function that returns whether a later stop has come meanwhile. A recovery
-    /// must call this function after it has begun. Otherwise it would undo a stop that comes after the check here and
-    /// before the recovery begins.
+    /// dropped the command. `execute` gets the function `stopped`, which returns whether a later stop has come
+    /// meanwhile. A recovery must call `stopped` after it has begun. Otherwise the recovery would undo a stop that
+    /// comes between the check here and the beginning of the recovery.
     pub fn carry_out<T>(
         &self,
         command: &Command,

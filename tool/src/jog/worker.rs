@@ -47,7 +47,7 @@ impl Worker {
                 let result = stopped.carry_out(&command, stops, |stopped| {
                     command.execute(&hand, &configuration, stopped).map_err(|refused| refused.to_string())
                 });
-                // The receiver is gone only when the program ends.
+                // The receiver still exists, because `drop` waits for this thread.
                 let _ = done.send(Outcome { command, result });
                 left.fetch_sub(1, Ordering::SeqCst);
             }
@@ -102,7 +102,7 @@ mod tests {
         let before = desired_joints(&hand, 2).expect("runs");
         hand.stop(1).expect("open");
         let worker = Worker::start(hand.clone(), configuration).expect("a thread");
-        // The recovery takes some time, and the others wait for it.
+        // The recovery takes some time, and the other commands wait for it.
         assert!(worker.send(Command::Recover { finger: 1 }));
         for _ in 1..MOST_WAITING {
             assert!(worker.send(Command::MoveJoints { finger: 2, by: [0.0, 0.05, 0.0] }));
@@ -117,7 +117,7 @@ mod tests {
         let hand = Arc::new(Hand::open(configuration.clone()).expect("the simulated hand opens"));
         hand.stop(1).expect("open");
         let worker = Worker::start(hand, configuration).expect("a thread");
-        // The recovery takes some time, and the others wait for it.
+        // The recovery takes some time, and the other commands wait for it.
         assert!(worker.send(Command::Recover { finger: 1 }));
         for _ in 1..MOST_WAITING {
             assert!(worker.send(Command::MoveJoints { finger: 2, by: [0.0; 3] }));

@@ -9,7 +9,7 @@ struct Comment<'a> {
     name: &'a str,
     purpose: &'a str,
     /// The declaration below the comment. A comment may begin with a declaration of its own, in which the parameters
-    /// have other names. The page then shows that one instead.
+    /// have other names. The page then shows the declaration in the comment.
     declaration: &'a str,
     /// The lines after the first, without the space with which they begin.
     lines: Vec<&'a str>,

@@ -1,4 +1,4 @@
-//! The page of the configuration file, from docs/sun2xp.toml.
+//! The manual page of the configuration file, made from docs/sun2xp.toml.
 
 use super::Page;
 use super::body::{body, section};

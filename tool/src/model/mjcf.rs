@@ -203,7 +203,8 @@ fn tendons(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) {
     xml.close();
 }
 
-/// Writes the keyframe `start`: the pose at the start, and as controls the homing pretension of every finger.
+/// Writes the keyframe `start`: the pose at the start and, as controls, the pretension of every finger, whose smallest
+/// tension is `tendon.minimum`.
 fn start(xml: &mut Xml, geometry: &Geometry, configuration: &Configuration) -> Result<(), TendonsError> {
     let mut pose: Vec<f64> = geometry.fingers.iter().flat_map(|finger| finger.start).collect();
     if let Some(object) = &geometry.object {

@@ -44,7 +44,7 @@ impl Screen {
             }
         });
         let screen = Self { terminal, interrupt, events };
-        // Dropping the screen restores the terminal.
+        // If the thread does not start, the screen is dropped, which restores the terminal.
         reading.map(|_| screen)
     }
 

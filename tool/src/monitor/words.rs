@@ -58,7 +58,7 @@ fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Returns a time span with a unit that suits it, in at most eight characters.
+/// Returns a time span with a unit that suits it. Up to 999 days, it has at most eight characters.
 pub fn span(seconds: f64) -> String {
     match seconds {
         s if s < 99.95 => format!("{s:.1} s"),
@@ -85,7 +85,7 @@ pub fn utc(seconds: u64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
-/// Breaks a text into lines of at most `width` characters, at spaces where possible. Nothing of the text is lost.
+/// Breaks a text into lines of at most `width` characters, at spaces where possible. Only white space is lost.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = vec![String::new()];

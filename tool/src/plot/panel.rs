@@ -10,8 +10,8 @@ pub const HEADING: Font = Font { size: 15.0, colour: INK, bold: true, anchor: An
 pub const LABEL: Font = Font { size: 13.5, colour: INK, bold: false, anchor: Anchor::Start };
 pub const NUMBER: Font = Font { size: 13.0, colour: SOFT_INK, bold: false, anchor: Anchor::Middle };
 
-/// A curve with more points than this for each pixel of its width is thinned. It keeps the lowest and the highest value
-/// of every section of about one pixel.
+/// A curve with more points than this for each pixel of the frame's width is thinned. It keeps the lowest and the
+/// highest value of every section of about one pixel.
 const POINTS_PER_PIXEL: usize = 4;
 
 /// Something in a panel. Coordinates are values of the panel's axes. Radii, strokes and fonts are in pixels.
@@ -107,8 +107,8 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// Draws the panel. `frame` is the left, top, width and height of its frame, pixels. Numbers and labels are outside
-    /// of the frame.
+    /// Draws the panel. `frame` is the left, top, width and height of its frame, pixels. The heading, and the numbers
+    /// and labels of the axes, are outside of the frame.
     pub fn draw(&self, svg: &mut Svg, frame: [f64; 4]) {
         let [left, top, width, height] = frame;
         let place = |[x, y]: [f64; 2]| [left + width * self.x.place(x), top + height * (1.0 - self.y.place(y))];

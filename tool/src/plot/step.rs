@@ -17,14 +17,14 @@ const HEIGHT: f64 = 190.0;
 
 /// A recording that is longer than this, s, is drawn only around its largest step.
 const LONG: f64 = 5.0;
-/// Beginning and end of the part of such a long recording that is drawn, s after its largest step.
+/// A recording longer than [`LONG`] is drawn from the first to the second of these times, s after its largest step.
 const AROUND: (f64, f64) = (-0.2, 1.3);
 
 /// A step of the set point is at least this large, degrees.
 const SMALLEST: f64 = 0.5;
 
-/// A joint has settled when its distance from the set point stays within this fraction of the step for this time, s.
-/// Later deviations, for example when somebody pushes the finger, do not count.
+/// A joint has settled when its distance from the set point stays within this fraction of the step for the time
+/// [`STAYS`], s. Later deviations, for example when somebody pushes the finger, do not count.
 const SETTLED: f64 = 0.05;
 const STAYS: f64 = 0.2;
 

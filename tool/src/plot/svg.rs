@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// it has.
 const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
-/// Mean width of a letter of DejaVu Sans, as a fraction of its size.
+/// Mean width of a letter of DejaVu Sans, as a fraction of the font size.
 const LETTER: f64 = 0.54;
 
 /// A picture that is being drawn. Coordinates are in pixels, y downward.
@@ -160,7 +160,7 @@ impl Svg {
         self.add(format_args!("</g>"));
     }
 
-    /// The whole document, scaled to a width, pixels.
+    /// Returns the whole document, scaled to a width of `scaled` pixels.
     pub fn finish(self, scaled: f64) -> String {
         let Self { body, width, height, .. } = self;
         let tall = (height * scaled / width).round();

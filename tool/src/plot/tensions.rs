@@ -59,7 +59,8 @@ impl Plot for Tensions {
         let all = || self.points.iter().flat_map(|point| point.measured.into_iter().chain(point.wanted));
         let largest = all().filter(|value| value.is_finite()).fold(1.3 * t_min, f64::max);
         let lowest = all().filter(|value| value.is_finite()).fold(0.0, f64::min);
-        // All panels have the same axis, so that the tendons can be compared. A distant t_max would flatten the curves.
+        // All panels have the same axis, so that the tendons can be compared. The axis does not extend to a distant
+        // t_max, because that would flatten the curves.
         let high = if t_max < 2.0 * largest { t_max.max(largest) } else { largest };
         let tension = Axis::linear(lowest, 1.08 * high);
         let panel = |tendon: usize| {

@@ -144,7 +144,7 @@ fn outline(bins: &[(i32, usize)]) -> Vec<[f64; 2]> {
     points
 }
 
-/// The wake-ups over time. The largest value of every pixel is visible.
+/// The wake-ups over time. The largest value in every pixel column is visible.
 fn course(fingers: &[(usize, &Times)], time: Axis, period: f64) -> Panel {
     let mut marks = vec![Mark::Level { y: period, stroke: PERIOD, label: String::new() }];
     let mut largest = 0f32;

@@ -6,13 +6,14 @@ use sun2xp::finger::{ALTERED, without_remedy};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::Unusable;
 
-/// Returns the failure of a file that `library` has written, with the cause and the remedy.
+/// Returns the failure for a file that cannot be used, with the cause and the remedy. `library` is the version of the
+/// library that has written the file.
 pub fn unusable(path: &Path, library: &str, reason: &str) -> Failure {
     format!("{} cannot be used: {reason}. {ALTERED}{}", ShownPath(path), or_by(library)).into()
 }
 
-/// Returns the key of a recorded configuration that cannot be used, and the reason. The remedy of the check is for a
-/// person who writes a configuration, so it is left out.
+/// Returns the unusable key of a recorded configuration, and the reason. The remedy of the check is for a person who
+/// writes a configuration, so it is left out.
 pub fn named(wrong: &Unusable) -> String {
     format!("{}: {}", wrong.key, without_remedy(&wrong.reason))
 }

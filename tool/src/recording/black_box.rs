@@ -1,4 +1,4 @@
-//! A black box as a recording of one finger.
+//! Reads a black box as a recording of one finger.
 
 use super::altered::{named, unusable};
 use super::entry::{Entry, Item};

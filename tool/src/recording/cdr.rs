@@ -44,7 +44,7 @@ pub fn encode(sample: &Sample, bytes: &mut Vec<u8>) {
     let fault = sample.fault().map_or(0, |fault| fault.kind.number());
     bytes.extend_from_slice(&[u8::from(sample.computed), u8::from(sample.touching), fault, 0]);
     let stage = sample.stage_name();
-    // The length of a string includes the byte 0 at its end. A stage has a short name.
+    // The length of a string includes the byte 0 at its end. The name of a stage is short, so its length fits in a u32.
     bytes.extend_from_slice(&(stage.len() as u32 + 1).to_le_bytes());
     bytes.extend_from_slice(stage.as_bytes());
     bytes.push(0);

@@ -244,7 +244,8 @@ impl Content {
                     None => return Err("a message belongs to no channel".into()),
                 }
             }
-            // A chunk whose kind was altered is skipped like a record of an unknown kind, so its messages are missing.
+            // If the opcode of a chunk was altered, the chunk is skipped as an unknown record, and its messages are
+            // missing.
             Record::Statistics(written) if written.message_count != self.messages => {
                 let (read, written) = (self.messages, written.message_count);
                 return Err(format!("{read} messages were read, and {written} were written").into());

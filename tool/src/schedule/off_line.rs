@@ -152,8 +152,8 @@ pub fn touches(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor, 
     lines(hand, fingers).map(|line| touches_on_line(hand, fingers, line, sensor, rate)).sum()
 }
 
-/// The largest number of tactile events in a period on the port of `finger`, which has `sharing` fingers. The servo
-/// requests only those for which the exchange leaves time.
+/// The largest number of tactile events in a period on the port of `finger`. `sharing` is the number of the thread's
+/// fingers on this port. The servo requests only the tactile events for which the exchange leaves time.
 fn touches_on_line(
     hand: &Configuration,
     fingers: &[FingerNumber],
@@ -183,7 +183,7 @@ fn lines<'a>(hand: &'a Configuration, fingers: &'a [FingerNumber]) -> impl Itera
         .map(move |&finger| (finger, fingers.iter().filter(|&&other| shares(finger, other)).count()))
 }
 
-/// Time of the longest exchange on the thread's ports with its tactile events, us. `period` is in us.
+/// Longest time of an exchange and its tactile events on one of the thread's ports, us. `period` is in us.
 fn longest_exchange(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor, period: f64) -> f64 {
     lines(hand, fingers)
         .map(|(finger, sharing)| {

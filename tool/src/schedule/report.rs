@@ -139,7 +139,7 @@ impl Report {
         }
     }
 
-    /// Returns that a deadline may be missed at the configured rate, why, and what to do.
+    /// Returns the message that a deadline may be missed at the configured rate, with the reason and the remedy.
     pub fn complaint(&self) -> String {
         let change = match self.configured.fastest.rate {
             Some(fastest) if f64::from(fastest) > self.rate => format!("raise hand.rate to {fastest}"),

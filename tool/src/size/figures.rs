@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::Vector4;
 
-/// Up to this fraction of its smallest stiffness with locked motors, a finger is stable at 1000 Hz with some margin.
+/// Largest stiffness with which a finger is stable at 1000 Hz with some margin, as a fraction of its smallest stiffness
+/// with locked motors.
 const STABLE_PART: f64 = 0.7;
 
 /// Each motor oscillates on its tendon. This is the least number of servo cycles in one period of the fastest of these
@@ -49,7 +50,7 @@ impl Figure {
         Self { what, has: Some(has), needs: Some(needs), unit, sufficient: has <= needs, advice }
     }
 
-    /// A value for the choice of a part that the configuration does not describe.
+    /// A requirement that has no configured value. It helps to choose a part.
     fn choose(what: &'static str, needs: f64, unit: &'static str, advice: &'static str) -> Self {
         Self { what, has: None, needs: Some(needs), unit, sufficient: true, advice }
     }

@@ -28,7 +28,7 @@ pub struct Access {
 /// Why a request is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// `Host` is missing, or it is not a name of this server.
+    /// `Host` is missing, occurs more than once, or is not a name of this server.
     Host,
     /// `Origin` names another page, or it occurs more than once.
     Origin,

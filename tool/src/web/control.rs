@@ -119,7 +119,7 @@ impl Drop for Control {
 
 /// The answer to a command that is not carried out.
 const DROPPED: &str = "the command was dropped by an emergency stop, or because sun2xp ends: recover the fingers or \
-                       start sun2xp again, and send it again";
+                       start sun2xp again, and send the command again";
 
 /// What the thread needs to carry commands out.
 struct Executor {

@@ -16,7 +16,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
 /// Largest number of connections that are not the WebSocket of a page. A browser opens up to six connections to load
-/// the files of a page. They end with their answers, and a further connection becomes the WebSocket.
+/// the files of a page. Each of them is closed after its answer. A further connection becomes the WebSocket.
 const CONNECTIONS: usize = 64;
 
 /// A connection that sends nothing for this time is closed. The server pings each WebSocket more often than this, and
@@ -86,7 +86,7 @@ impl Limited {
     async fn next(&self) -> io::Result<(Connection, SocketAddr)> {
         let permit = Arc::clone(&self.free).acquire_owned().await.map_err(io::Error::other)?;
         let (stream, peer) = self.listener.accept().await?;
-        // Batches are small, and they must not wait for more bytes.
+        // A page gets its samples in small batches. The kernel must not delay them to collect more bytes.
         stream.set_nodelay(true)?;
         Ok((Connection::new(stream, permit), peer))
     }

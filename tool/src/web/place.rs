@@ -1,4 +1,4 @@
-//! The place of a connection among the limited number of them, and the time that the connection has.
+//! The place that a connection occupies, one of a limited number of places, and the time limit of the connection.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -11,7 +11,7 @@ pub const HEADER: Duration = Duration::from_secs(10);
 /// limit.
 const ANSWER: Duration = Duration::from_secs(60);
 
-/// The place of a connection among the limited number of them.
+/// The place that a connection occupies, one of a limited number of places.
 #[derive(Clone)]
 pub struct Place(Arc<Mutex<Progress>>);
 
@@ -50,7 +50,7 @@ impl Place {
         *progress = change(before);
     }
 
-    /// Returns the time that the connection has from its acceptance; none for the WebSocket of a page.
+    /// Returns the time limit of the connection, counted from its acceptance; none for the WebSocket of a page.
     pub fn time(&self) -> Option<Duration> {
         match &*self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             Progress::Header(_) => Some(HEADER),

@@ -95,7 +95,7 @@ impl Session {
         let Self { mut reader, mut writer } = self;
         let broken = tokio::select! {
             broken = reader.serve() => broken,
-            // The page is gone.
+            // The page takes no more messages.
             _ = writer.serve() => None,
         };
         if let Some(control) = &reader.control {
@@ -103,7 +103,7 @@ impl Session {
         }
         if let Some(reason) = broken {
             let frame = CloseFrame { code: close_code::POLICY, reason: reason.into() };
-            // The session ends in either case.
+            // The session ends even if the page does not get this message.
             let _ = writer.write(Message::Close(Some(frame))).await;
         }
     }

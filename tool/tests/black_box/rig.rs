@@ -61,7 +61,8 @@ pub fn eventful(board: &SimulatedPort, hand: &Hand) {
         hand.adjust(2, &format!("tendon.minimum = {}", 5 + step % 2)).expect("adjusted");
         cycles(hand, 60);
     }
-    // The board is silent. The second silence is so long that the servo fades the motor torques and then restarts.
+    // The board is silent for 3 cycles, and later for 30. In the second silence the motor torques fade to their final
+    // values, so the controller restarts at the first reply afterwards.
     for silence in [3.0, 30.0] {
         board.with_board(|_| std::thread::sleep(Duration::from_secs_f64(silence / RATE)));
         cycles(hand, 40);

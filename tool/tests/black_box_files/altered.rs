@@ -1,5 +1,5 @@
-//! Alters every number, key and array of a recording, one at a time and several at once. Every replay ends without a
-//! panic.
+//! Alters the values, keys and arrays of a recording, one at a time, and several numbers at once. No altered recording
+//! makes the reader or the replay panic.
 
 use crate::recorded::{record, recorded, varied};
 use rand_pcg::Pcg64Mcg;
@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use sun2xp::finger::Recording;
 use sun2xp::model::configuration::Scheme;
 
-/// Replacements for a number. Some are not JSON.
+/// Replacements for a value. `NaN` is not JSON.
 const INSTEAD: [&str; 18] = [
     "null",
     "NaN",
@@ -35,10 +35,10 @@ const INSTEAD: [&str; 18] = [
 /// Marks the place of a replacement.
 const MARK: &str = "@instead@";
 
-/// A sample tries one alteration out of this number of alterations.
+/// Without [`EVERYTHING`], one in this many of the alterations that change a single place is tried.
 const SAMPLE: usize = 41;
 
-/// Number of alterations in a sample that change several numbers at once.
+/// Without [`EVERYTHING`], this number of alterations that change several numbers at once is tried.
 const AT_ONCE: usize = 400;
 
 /// If this variable is set, every alteration is tried, with every controller. The number of alterations that change

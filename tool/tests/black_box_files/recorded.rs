@@ -60,8 +60,8 @@ pub fn varied(recording: &Recording) -> Recording {
         Activity::Turn(pulls * 0.05),
         Activity::Release { ramp: 0.2 },
     ];
-    // On a busy machine the servo sometimes waits for the simulated finger. Nothing is computed in such a cycle, and it
-    // may be the last one.
+    // On a busy machine the servo sometimes waits for the simulated finger. Nothing is computed in such a cycle. The
+    // last cycle may be such a cycle.
     let computed = recording.cycles.iter().rev().find_map(|cycle| cycle.control);
     let followed = computed.expect("a spring").input.activity;
     varied.cycles.retain(|cycle| cycle.control.is_some());

@@ -20,7 +20,7 @@ fn table(text: &str) -> (Vec<&str>, Vec<BTreeMap<&str, String>>) {
     (header, rows)
 }
 
-/// The fields of a line, of which some are quoted.
+/// The fields of a line. Some fields may be quoted.
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut quoted) = (vec![String::new()], false);
     for letter in line.chars() {
@@ -129,14 +129,16 @@ fn a_refused_or_failed_export_leaves_the_folder_as_it_was() {
         names.sort();
         names
     };
-    // The first event follows rows of the finger, so the tool has begun a file for them when it finds the old file.
+    // The recording has cycles of the finger before the first event. So the tool has already begun the file of the
+    // cycles when it finds the old file of the events.
     fs::write(path("finger-2-events.csv"), "old").expect("written");
     let output = folder.path().to_str().expect("a name");
     let refused = tool(folder.path(), &["export", recorded.file().to_str().expect("a name"), "--output", output]);
     assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     assert_eq!(names(), ["finger-2-events.csv"]);
 
-    // The damage follows rows of the finger, so the tool has begun a file for them when it finds the damage.
+    // The recording has cycles of the finger before the damage. So the tool has already begun the file of the cycles
+    // when it finds the damage.
     fs::copy(recorded.file(), path("box.jsonl")).expect("copied");
     let recording = ["record", "--from-black-box", "box.jsonl", "-o", "hand.mcap"];
     done(folder.path(), &recording);
@@ -165,7 +167,7 @@ fn a_full_disk_is_named_with_the_folder() {
     assert_eq!(fs::read_dir(folder.path().join("csv")).expect("there").count(), 0);
 }
 
-/// Nobody reads the names of the files.
+/// The pipe at standard output has no reader, so the tool cannot print the names of the files.
 #[test]
 fn finished_work_succeeds_even_if_nobody_reads_the_printed_names() {
     let recorded = recorded();

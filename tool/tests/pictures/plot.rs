@@ -72,7 +72,7 @@ fn curves_have_the_recorded_values() {
     for ((joint, tension), cycle) in measured.iter().zip(&tension).zip(&cycles) {
         let report = cycle.control.as_ref().expect("computed").report;
         let seconds = (cycle.began - start) as f64 * 1e-9;
-        // Coordinates are rounded to 0.01 pixels. A panel is 190 pixels high and some 500 pixels wide.
+        // Coordinates are rounded to 0.01 pixels. The panels are at least 190 pixels high and some 500 pixels wide.
         assert!((joint[0] - seconds).abs() < 2e-3 && (joint[1] - report.joints[2].to_degrees()).abs() < 0.02);
         assert!((tension[1] - report.tensions[2]).abs() < 0.02, "{tension:?} {}", report.tensions[2]);
     }

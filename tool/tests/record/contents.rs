@@ -19,11 +19,11 @@ pub struct Contents {
     pub lost: [u64; 3],
     /// For each finger, its last sample, computed from the channel for replay.
     pub last: [Option<Sample>; 3],
-    /// Whether the file has its end.
+    /// Whether the file is complete: it ends with the magic bytes of MCAP.
     pub finished: bool,
 }
 
-/// Reads a file that may have no end.
+/// Reads a file that may be incomplete.
 pub fn contents(file: &[u8]) -> Contents {
     let mut contents = Contents { finished: file.ends_with(mcap::MAGIC), ..Default::default() };
     let mut view = None;

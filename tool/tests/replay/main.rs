@@ -25,7 +25,7 @@ fn replay(recording: &Recorded, messages: &[Message]) -> (Option<i32>, Value) {
     (status, serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}")))
 }
 
-fn is_cycle(message: &Message, finger: FingerNumber) -> Option<u64> {
+fn number_of_cycle(message: &Message, finger: FingerNumber) -> Option<u64> {
     match message {
         Message::Cycle { finger: of, record } if *of == finger => Some(record.cycle),
         _ => None,
@@ -44,7 +44,8 @@ fn a_run_with_changes_a_fault_and_a_recovery_is_the_same_to_the_last_bit() {
     let fingers = told["fingers"].as_array().expect("fingers");
     assert_eq!(fingers.len(), 3);
     for (finger, number_of) in fingers.iter().zip(FingerNumber::ALL) {
-        let recorded = recording.messages.iter().filter(|message| is_cycle(message, number_of).is_some()).count();
+        let recorded =
+            recording.messages.iter().filter(|message| number_of_cycle(message, number_of).is_some()).count();
         assert_eq!(number(&finger["cycles"]), recorded as u64);
         assert!(number(&finger["without_state"]) < 100, "{finger:#}");
         assert!(number(&finger["replayed"]) > 800 && number(&finger["states"]) > 10, "{finger:#}");
@@ -103,12 +104,12 @@ fn one_altered_bit_is_found_in_its_cycle() {
 #[test]
 fn a_gap_is_reported_and_the_replay_continues_after_it() {
     let recording = recorded();
-    let begin = recording.messages.iter().filter_map(|message| is_cycle(message, FingerNumber::ONE)).nth(300);
+    let begin = recording.messages.iter().filter_map(|message| number_of_cycle(message, FingerNumber::ONE)).nth(300);
     let begin = begin.expect("long enough");
     let lost = begin..begin + 20;
     let whole = recording.messages.iter();
     let rest: Vec<Message> = whole
-        .filter(|message| !is_cycle(message, FingerNumber::ONE).is_some_and(|cycle| lost.contains(&cycle)))
+        .filter(|message| !number_of_cycle(message, FingerNumber::ONE).is_some_and(|cycle| lost.contains(&cycle)))
         .cloned()
         .collect();
     let (status, told) = replay(recording, &rest);
@@ -119,7 +120,7 @@ fn a_gap_is_reported_and_the_replay_continues_after_it() {
     assert!(number(&finger["replayed"]) > 600 && number(&finger["without_state"]) < 200, "{finger:#}");
 }
 
-/// The number of the second controller of a finger. The run of these tests adjusts finger 2.
+/// The number of the second controller of a finger. In the recorded run, finger 2 is adjusted.
 fn second_controller(recording: &Recorded, finger: FingerNumber) -> u32 {
     let mut numbers = recording.messages.iter().filter_map(|message| match message {
         Message::Controller { finger: of, source, .. } if *of == finger => Some(source.number),

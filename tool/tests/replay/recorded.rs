@@ -41,7 +41,7 @@ pub fn recorded() -> &'static Recorded {
             assert_eq!(reader.lost(), [0; 3]);
             (messages, reader.description().clone())
         });
-        // The reader attaches meanwhile.
+        // The reader attaches during these cycles.
         cycles(&hand, (0.5 * RATE) as u64);
         eventful(&board, &hand);
         board.with_finger(2, |finger| finger.set_faults(Status::EMERGENCY_STOP)).expect("finger 2");

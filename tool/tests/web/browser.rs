@@ -20,10 +20,11 @@ const PIXELS: &str = r"
     return Array.from({ length: 64 * 48 }, (_, at) => data[4 * at] + data[4 * at + 1] + data[4 * at + 2]);
 ";
 
-/// Waits until the page draws. The page can clear the picture only after this frame.
+/// Waits for the next frame, in which the page draws the picture. The picture is not cleared before this frame ends, so
+/// the rest of the script can read it.
 const NEXT_FRAME: &str = "await new Promise(requestAnimationFrame);";
 
-/// Makes the view narrower. Then waits until all observers of its size know this, which is still in the same frame.
+/// Makes the view narrower, and waits until all observers of its size have been called. This happens in the same frame.
 const NARROWER: &str = r"
     const parent = document.getElementById('hand3d').parentElement;
     await new Promise(requestAnimationFrame);
@@ -54,7 +55,7 @@ const PICTURES: &str = "
     return pictures / (performance.now() - start) * 1000;
 ";
 
-/// Smallest idle share of the processors with which the speed of the page is judged.
+/// The speed of the page is judged only if at least this share of the processors is idle.
 const LEAST_IDLE: f64 = 0.7;
 
 /// Returns the pixels of the view after the script `first`.
@@ -132,9 +133,9 @@ fn the_page_draws_the_hand_and_the_picture_moves_with_it() {
     let background = before[0];
     let hand_pixels = before.iter().filter(|&&pixel| pixel.abs_diff(background) > 60).count();
     assert!(hand_pixels > 150, "the hand covers {hand_pixels} of {} pixels", before.len());
-    // The picture also changes when a font arrives, and each time that the page reduces its quality because the machine
-    // draws too slowly, which it does at most three times. So at least one of five motions there and back has only the
-    // changes of the hand.
+    // The picture also changes when a font arrives, and when the page reduces its quality because the machine draws too
+    // slowly. The page reduces its quality at most three times. So at least one of five motions there and back has only
+    // the changes of the hand.
     let mut changes = Vec::new();
     let moved = (0..5).any(|_| {
         let bent = picture_at(&browser, &hand, [0.3, 0.9, 1.2], "17.");

@@ -2,7 +2,7 @@
 
 Lengths are in cm, forces in N, torques in N cm, angles in rad, stiffnesses in N/cm.
 
-An array has no single truth value, so `==` does not compare the values of two results.
+`==` compares two results by identity and not by value, because a comparison of arrays has no single truth value.
 """
 
 from ._calibration import Identified, Signs, Zeros

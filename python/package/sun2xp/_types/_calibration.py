@@ -60,8 +60,9 @@ class Identified:
     joint_coulomb: Array
     #: Viscous friction of the joints, N cm s/rad: shape (3,).
     joint_viscous: Array
-    #: Inertia of each rotor, `motor.inertia`, kg m^2: shape (4,). A rotor that could not be measured has its configured
-    #: inertia. None if no measured inertia differs from the configured one.
+    #: Inertia of each rotor, divided by the ratio of true to commanded torque, `motor.inertia`, kg m^2: shape (4,). A
+    #: rotor that could not be measured has its configured value. None if no measured value differs from the configured
+    #: one.
     rotor_inertia: Optional[Array]
     #: Measured moment arms `geometry.r`, cm: shape (3, 4). None if they were not measured,
     #: or agree with the configured ones.

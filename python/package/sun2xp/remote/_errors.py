@@ -52,7 +52,7 @@ class NoAnswer(TimedOut):
 
 
 def forked() -> Error:
-    """Returns the exception of a child of `os.fork` that uses a connection of its parent."""
+    """Returns the exception for a process that `os.fork` has made and that uses a connection of its parent."""
     remedy = 'make the call in the parent, or start processes with the method "spawn"'
     text = "this process was forked from the process that has connected, and only that process has the threads of the"
     return Error(f"{text} connection: {remedy}", number=ErrorNumber.FORKED, remedy=remedy)

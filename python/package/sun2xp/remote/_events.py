@@ -14,9 +14,9 @@ class RemoteEvents:
     the hand or the queue is closed.
 
     Every queue gets all events. A queue that is not read keeps the newest 4096. The times of events are those of the
-    server's clock. The server sends the part of a fault or a warning as a number, whose meaning depends on the fault
-    (docs/faults.md). The event names the part, for example "tendon 3" or "finger". For a fault that this version of the
-    client does not know, the event has "part 3" instead of "tendon 3".
+    server's clock. The server sends a number for the part of the finger that a fault or a warning concerns. The
+    meaning of the number depends on the fault (docs/faults.md). The event names the part, for example "tendon 3" or
+    "finger". For a fault that this version of the client does not know, the event has "part 3" instead of "tendon 3".
     """
 
     def __init__(self, receiver: Receiver) -> None:

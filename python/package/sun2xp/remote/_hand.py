@@ -175,7 +175,7 @@ class RemoteHand(Reading):
         condition: str = "arrived",
         timeout: Optional[float] = None,
     ) -> None:
-        """Waits until the condition holds for these fingers, for the set points that were sent last.
+        """Waits until the condition holds for the newest set point of each of these fingers.
 
         Args:
             fingers: a finger, or several. The default is all fingers to which this client has sent something.
@@ -204,8 +204,8 @@ class RemoteHand(Reading):
             left = 0.1 if deadline is None else min(0.1, deadline - time.monotonic())
             holds = self._receiver.wait_for(lambda: self._hold(wanted, _CONDITIONS[condition]), max(left, 0))
             self._check()
-            # After a refusal, the set point before the refused one counts as the last one, and the condition may hold
-            # for it. The refusal must be raised nevertheless.
+            # After a refusal, the set point before the refused one counts as the newest one, and the condition may
+            # hold for that set point. The refusal must be raised nevertheless.
             with self._network.sender.lock:
                 self._owner.check(wanted)
             for finger in wanted:
@@ -234,8 +234,8 @@ class RemoteHand(Reading):
         """Zeros gauges and encoders of a finger. Its joints may move between their stops. Waits up to ten minutes.
 
         Raises:
-            Error: the calibration failed, or its results could not be stored. They are in force if they could not be
-                stored, or if the finger faulted after they had been found.
+            Error: the calibration failed, or its results could not be stored. Results that could not be stored are in
+                force. If the finger faulted after the results had been found, they are in force too.
         """
         self._check(finger)
         self._request("calibrate", finger, self._epoch(), timeout=_CALIBRATION_TIME)

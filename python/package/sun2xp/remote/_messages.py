@@ -164,8 +164,8 @@ class StatusMessage:
 @dataclasses.dataclass
 class Answer:
     """The answer to a Request, or the reason why a Target was refused. For a refused Target, `number` is its sequence
-    number. For an acquire with code 0, it is the public number of the new epoch, and `epoch` is the epoch itself: a
-    random number that only its owner and the server know."""
+    number. For an acquire with code 0, `number` is the public number of the new epoch, and `epoch` is the epoch itself:
+    a random number that only its owner and the server know."""
 
     code: int
     catch_ms: int

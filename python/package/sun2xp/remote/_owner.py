@@ -1,5 +1,5 @@
-"""The client's part of the ownership: what it has sent to each finger, and the Targets that repeat it. Target, State
-and Answer are messages of docs/remote-protocol.md."""
+"""The client's part of the ownership: what the client has sent to each finger, and the Targets that repeat this.
+Target, State and Answer are messages of docs/remote-protocol.md."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LAST_COMMAND = 2**32 - 1
 
 
 class Owner:
-    """The set points of one hand. The lock of the Sender protects all of it."""
+    """The set points of one hand. The lock of the Sender protects this object."""
 
     def __init__(self, put: Callable[[bytes], None], receiver: Receiver) -> None:
         self._put = put
@@ -52,8 +52,8 @@ class Owner:
         return self._epoch
 
     def begin(self, answer: Answer, end: float) -> None:
-        """Begins the epoch of an Answer to acquire. The server ends the epoch when the newest Target is older than
-        `end`, s."""
+        """Begins the new epoch that the server returned in its Answer to the Request `acquire`. The server ends the
+        epoch when the newest Target is older than `end`, s."""
         self._epoch, self._validity, self._end = answer.epoch, answer.catch_ms, end
         self._number, self._since, self._sequence = answer.number, answer.time, 0
         self._restarts = self._receiver.restarts

@@ -145,9 +145,9 @@ class Reading:
         return name if colon else ""
 
     def _stopped(self, finger: int) -> Tuple[int, int]:
-        """Returns the finger that an Answer concerns, and the number of its fault, or 0 if the fault is not known. If
-        `finger` is 0, the Answer concerns the first finger that has stopped. If no such finger has
-        stopped, for example because it has been recovered since, the returned finger is `finger`."""
+        """Returns the finger that an Answer with the code FAULTED concerns, and the number of its fault. `finger` is
+        the finger of the Request; 0 stands for the first finger that has stopped. If the fault is not known, for
+        example because the finger has been recovered since, returns `finger` and 0."""
         try:
             faults = {number: status.fault for number, status in self._ask_status().fingers.items()}
         except NoAnswer:
@@ -156,8 +156,8 @@ class Reading:
         return (stopped[0], faults[stopped[0]]) if stopped else (finger, 0)
 
     def _answers(self, key: str, payload: Optional[bytes], timeout: float) -> List[tuple]:
-        """Asks again if a get has reached nobody: just after a client has connected, Zenoh may not know the way to the
-        server yet."""
+        """Sends a get (a query of Zenoh), and returns its answers. Repeats a get that has reached nobody: just after a
+        client has connected, Zenoh may not know the way to the server yet."""
         for _ in range(ATTEMPTS - 1):
             begun = time.monotonic()
             answers = self._network.get(key, payload, timeout)

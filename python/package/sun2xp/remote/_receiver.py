@@ -81,7 +81,7 @@ def _part(kind: EventKind, number: int, values: Tuple[float, ...]) -> str:
     # The number 0 means joint 0 or the whole finger. The other parts are numbered from 1.
     if part == "joint" or (part and number):
         return f"{part} {number}"
-    # A fault of a newer server has a part of unknown kind.
+    # A newer server may report a fault that FAULT_PARTS does not list.
     return f"part {number}" if number else "finger"
 
 
@@ -242,7 +242,7 @@ class Receiver:
         return record
 
     def faults(self) -> Dict[int, int]:
-        """Returns the number of the fault of each finger in the newest State, or 0 if the finger has no fault."""
+        """Returns the number of the fault in the newest record of each finger, or 0 if the finger has no fault."""
         with self.changed:
             return {finger: int(record["fault"]) for finger, record in self._newest.items()}
 

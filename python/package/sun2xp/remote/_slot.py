@@ -1,4 +1,5 @@
-"""What the owner sends to one finger. Target and State are messages of docs/remote-protocol.md."""
+"""What the owner sends to one finger. Target and State are messages of docs/remote-protocol.md. A part is what a Target
+says about one finger."""
 
 from __future__ import annotations
 
@@ -91,7 +92,7 @@ class Slot:
 
 
 def _fill(part: Part, earlier: Part) -> None:
-    """Adds the values of an earlier part that this one does not have."""
+    """Copies to `part` each value of `earlier` that `part` does not have."""
     if part.place == NO_PLACE:
         part.place, part.values, part.poses = earlier.place, earlier.values, earlier.poses
     if part.stiffness is None:

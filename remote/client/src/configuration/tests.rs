@@ -1,4 +1,4 @@
-//! Tests which configurations are read, and with which texts the others are refused.
+//! These tests check which configurations are read, and with which texts others are refused.
 
 use super::*;
 

@@ -46,11 +46,11 @@ fn client_name<'de, D: Deserializer<'de>>(from: D) -> Result<Option<ClientName>,
     name.map(Some).map_err(|error| D::Error::custom(format!("remote.client: {error}")))
 }
 
-/// The places of the keys of `[remote]` in the text. A place is a range of bytes.
+/// The places of the values of `[remote]` in the text. A place is a range of bytes.
 pub struct Places(Document<String>);
 
 impl Places {
-    /// Returns the place of a key. If the table has no such key, returns the place of the table.
+    /// Returns the place of a key's value. If the table has no such key, returns the place of the table.
     pub fn of(&self, key: &str) -> Option<Range<usize>> {
         let table = self.0.get("remote")?;
         table.get(key).and_then(toml_edit::Item::span).or_else(|| table.span())

@@ -18,7 +18,7 @@ impl Exchange {
     pub fn record(&self, number: i32, now: u64) -> Result<&Record, RemoteError> {
         let finger = self.finger(number)?;
         let record = self.view.newest(finger).ok_or_else(|| self.nothing_heard())?;
-        // A finger that has stopped may have no new cycles.
+        // A finger that has stopped may have no new cycles, so the time since the newest State counts.
         let age = match record.stage {
             Stage::Faulted(_) => self.view.silence(now),
             _ => self.view.age(finger, now),
@@ -88,8 +88,9 @@ impl Exchange {
         Ok(changes)
     }
 
-    /// Refuses to send if the hand is not owned or not heard, if a finger has stopped, or if the hand has refused an
-    /// earlier set point. The refusal of an earlier set point is reported only once.
+    /// Refuses to send if this client does not own the hand, if no State was received recently, if a finger has
+    /// stopped, or if the hand has refused an earlier set point. The refusal of an earlier set point is reported only
+    /// once.
     fn refuse_unless_ready(&mut self, now: u64, fingers: impl IntoIterator<Item = Finger>) -> Result<(), RemoteError> {
         self.owned()?;
         let silence = self.view.silence(now).ok_or_else(|| self.nothing_heard())?;

@@ -55,7 +55,7 @@ impl RemoteHand {
     ///
     /// # Errors
     /// Returns the errors of [`RemoteHand::position`]. Returns an error if this client does not own the hand, or if the
-    /// hand has refused a command and no call has reported it yet.
+    /// hand has refused a command and no call has reported this refusal yet.
     pub fn progress(&self, finger: i32) -> Result<RemoteProgress, RemoteError> {
         self.link.shared.lock().progress(finger, now())
     }

@@ -27,8 +27,8 @@ impl RemoteHand {
     /// Stops every finger as [`RemoteHand::stop`] does, for an emergency. No Targets are sent until the server has
     /// confirmed the stop. Without the confirmation, a hand that this client owns goes to its end state by itself,
     /// because no Targets arrive. A hand that another client owns still gets the Targets of that client, so it stops
-    /// only if the stop reaches the server. If the hand cannot be reached, and this client has not lost it to another
-    /// one, repeat the call until it succeeds.
+    /// only if the stop reaches the server. If the hand cannot be reached, repeat the call until it succeeds, unless
+    /// another client has taken the hand over.
     ///
     /// # Errors
     /// Returns an error if the server does not give this client a permission, or if the hand cannot be reached.

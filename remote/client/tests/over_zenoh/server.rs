@@ -17,7 +17,8 @@ use zenoh::{Config, Session, Wait};
 /// How long a test waits for what must happen. The machine may be busy.
 pub const LIMIT: Duration = Duration::from_secs(20);
 
-/// The configuration of a client of this port. The machine may be busy, so a position counts as stale only after 5 s.
+/// The configuration of a client that connects to this port. The machine may be busy, so a position counts as stale
+/// only after 5 s.
 pub fn configuration(port: u16, hand: &str, client: &str) -> RemoteConfiguration {
     let (hand, client) = (hand.parse().expect("a name"), client.parse().expect("a name"));
     let mut configuration = RemoteConfiguration::new(&format!("tcp/127.0.0.1:{port}"), hand, client);
@@ -40,7 +41,7 @@ pub struct Watched {
 
 impl Watched {
     pub fn lock(&self) -> MutexGuard<'_, FakeHand> {
-        self.hand.lock().expect("no test panics with the lock")
+        self.hand.lock().expect("no test panics while it holds the lock")
     }
 
     /// Waits until `holds` is true of the hand. `what` names what is waited for.

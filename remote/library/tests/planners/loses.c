@@ -1,4 +1,5 @@
-/* Is suspended by SIGSTOP for so long that it loses the hand. Then it recovers one finger, and later all of them. */
+/* This planner is suspended by SIGSTOP for so long that it loses the hand. Then it recovers one finger, and later all
+   of them. */
 #include <signal.h>
 #include <stdio.h>
 #include <sys/wait.h>
@@ -7,7 +8,7 @@
 
 static sun2xp_hand *hand;
 
-/* The number of the finger's fault. The call is repeated, because a busy machine can delay the newest cycle. */
+/* The number of the finger's fault. sun2xp_fault is repeated, because a busy machine can delay the newest cycle. */
 static int fault(int finger)
 {
     struct sun2xp_fault fault;

@@ -1,4 +1,4 @@
-/* Every refusal that a planner of 1990 can provoke: result, errno and text. */
+/* Refusals that a planner of 1990 can provoke with wrong calls and wrong arguments: result, errno and text. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

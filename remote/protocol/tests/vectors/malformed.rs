@@ -29,7 +29,7 @@ fn changed(kind: &str, payload: &[u8], changes: &[(&str, usize, &[u8])]) -> Vec<
     changes.iter().map(change).collect()
 }
 
-/// Returns lines with this message, each with a wrong type, version or length.
+/// Returns one line for each variant of this message with a wrong type, version or length.
 fn framed(kind: &str, payload: &[u8]) -> Vec<String> {
     let mut lines = vec![
         line(kind, "nothing", &[]),

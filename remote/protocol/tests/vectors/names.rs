@@ -1,4 +1,4 @@
-//! Names of hands and clients, good and bad, and the keys that they give.
+//! Names of hands and clients, good and bad, and the Zenoh keys of one hand and one client.
 
 use crate::json::{object, text};
 use sun2xp_remote_protocol::{Action, ClientName, EVERY_STATUS, HandKeys, HandName};

@@ -5,7 +5,7 @@ use crate::control::motion::Motion;
 use nalgebra::Vector3;
 
 /// Largest distance of a stage from the reference after the time constant has become longer, relative to the largest
-/// such distance before. A reference at full speed stays below it if the time constant changes from 0.008 s to 0.02 s.
+/// such distance before. At full speed, a change of the time constant from 0.008 s to 0.02 s does not reach this bound.
 const STRETCH: f64 = 3.0;
 
 impl Reference {
@@ -37,11 +37,11 @@ impl Reference {
         let mut input = *anchor - moved.0[0];
         let (moved, mut next) = (converted(&moved), converted(&deviation));
         if longer > 1.0 {
-            // For the same rate of the first stage, the input would have to be farther ahead of this stage. It could
-            // then be beyond a set point at rest. So the input stays, and the reference slows down.
+            // To keep the rate of the first stage, the input would have to be farther ahead of this stage. The input
+            // could then be beyond a set point at rest. So the input is not changed, and the reference slows down.
             next.limit(&deviation, &input);
         } else {
-            // The first stage keeps its rate, too.
+            // With this input, the first stage also keeps its rate.
             input = next.0[0] + (input - deviation.0[0]) * longer;
         }
         *anchor = moved.0[0] + input;
@@ -67,8 +67,9 @@ impl Reference {
 }
 
 impl ReferenceState {
-    /// Bounds the outputs of the first stages to [`STRETCH`] times the range of the stages `before` and of their
-    /// `input`, seen from the last output. The last two outputs stay, because they determine the place and the rates.
+    /// Bounds the distance of each output from the last output, in each direction, to [`STRETCH`] times the largest
+    /// such distance of the stages `before` and of their `input`. The last two outputs are not changed, because they
+    /// determine the place and the rates.
     fn limit(&mut self, before: &Self, input: &Vector3<f64>) {
         let joints = before.0[ORDER - 1];
         let (mut low, mut high) = (Vector3::zeros(), Vector3::zeros());

@@ -15,8 +15,8 @@ const REACHED: f64 = 0.03;
 /// Missing fraction above which the motors move again. Up to this fraction, a completed take-up stays complete. The
 /// difference from [`REACHED`] prevents a limit cycle by friction.
 const COMPLETE: f64 = 0.1;
-/// Largest excess over the pretension with which the take-up is complete, as a fraction of the pretension. A finger at
-/// its stops has other tensions than the pretension.
+/// Largest excess over the pretension with which the take-up is complete, as a fraction of the pretension. The excess
+/// is permitted because the tensions of a finger at its stops differ from the pretension.
 const TOO_HIGH: f64 = 0.5;
 /// Tension, as a fraction of t_min, below which a tendon counts as having too little tension. It applies even if the
 /// common tension is right.
@@ -30,7 +30,7 @@ const LARGEST_UNOPPOSED: f64 = 2.0;
 const LARGEST_COMMON: f64 = 4.0;
 
 impl SlackTakeUp {
-    /// Changes the common stretch, and moves the targets to it.
+    /// Changes the common stretch, and moves the targets of the motors accordingly.
     pub(super) fn tighten(&self, slack: &mut Slack, travel: &Vector4<f64>) {
         let missing = self.missing(&slack.tensions);
         let was_steady = slack.steady;

@@ -26,7 +26,7 @@ pub struct Wiring {
     pub dead_motor: Option<usize>,
     pub blocked_motor: Option<usize>,
     pub dead_gauge: Option<usize>,
-    /// A gauge with this additional noise, counts.
+    /// A gauge, and the rms of its additional noise, counts.
     pub noisy_gauge: Option<(usize, f64)>,
     pub emergency_stop: bool,
     pub no_supply: bool,
@@ -51,7 +51,7 @@ impl Default for Wiring {
     }
 }
 
-/// The finger: its physics, and the controller with what it believes.
+/// The finger: its physics, with the values of `truth`, and its controller, with the configuration `belief`.
 pub struct World {
     pub plant: Plant,
     pub truth: ConfiguredFinger,

@@ -11,7 +11,8 @@ use crate::commission::vitals::Vitals;
 use crate::commission::wrong::Wrong;
 use sun2xp::model::configuration::{ConfiguredFinger, NamedHand};
 
-/// A finger, what is wrong with it, and what the tool must say. Parts of [`Wrong`] are counted from 1.
+/// A finger, what is wrong with it, and what the tool must say. [`Wrong`] counts motors, encoders, gauges and tendons
+/// from 1.
 pub struct Case {
     pub truth: ConfiguredFinger,
     pub belief: ConfiguredFinger,
@@ -170,7 +171,7 @@ pub struct Named {
     pub largest_torque: f64,
 }
 
-/// Does the steps up to the motors, or up to the first that has not passed.
+/// Does the steps board, encoders, gauges and motors, or those up to the first that does not pass.
 pub fn commission(case: &Case) -> Named {
     let world = World::new(&case.truth, &case.belief, case.wiring.clone());
     if let [Wrong::TendonLoose(tendon)] = case.expected[..] {

@@ -32,7 +32,7 @@ fn step(step: Step, world: &Shared, person: &mut Helper, belief: &ConfiguredFing
     (outcome, desk.finger.clone())
 }
 
-/// The bench reads the zero of the gauge through the converter, which has no counts below 0.
+/// The zero of the gauge is at -18 counts, and the converter delivers no count below 0.
 #[test]
 fn a_gauge_below_the_range_of_its_converter_is_named_and_left_out_of_the_line() {
     let (world, belief) = world(|truth| truth.gauge.zero[1] = -18.0);

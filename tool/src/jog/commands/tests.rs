@@ -21,7 +21,7 @@ fn settle(hand: &Hand, finger: i32) {
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !holds() {
-        assert!(begun.elapsed() < LIMIT, "{what} within {LIMIT:?}");
+        assert!(begun.elapsed() < LIMIT, "not within {LIMIT:?}: {what}");
         std::thread::sleep(Duration::from_millis(5));
     }
 }

@@ -113,7 +113,7 @@ fn axis(width: usize) -> String {
         let place = (class + 1) * width;
         let label = if *edge < 1000.0 { format!("{edge:.0}us") } else { format!("{:.0}ms", edge / 1000.0) };
         let length = text.chars().count();
-        if place > length || (length == 0 && place == 0) {
+        if place > length {
             text += &" ".repeat(place - length);
             text += &label;
         }

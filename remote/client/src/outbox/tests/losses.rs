@@ -1,4 +1,4 @@
-//! Random losses of Targets and of confirmations.
+//! Random losses of Targets, and confirmations that are late or lost.
 
 use super::*;
 
@@ -32,7 +32,7 @@ impl Random {
         (mixed ^ (mixed >> 31)) % bound
     }
 
-    /// A change of a planner.
+    /// Returns a random change, as a planner could send it.
     fn change(&mut self) -> Change {
         let angles = [self.below(256) as f64; 3];
         match self.below(3) {
