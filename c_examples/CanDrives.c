@@ -85,7 +85,7 @@ static void watch(const struct can_bus *bus)
 int main(int count, char **arguments)
 {
     struct can_bus bus;
-    double heard = can_seconds();
+    double received = can_seconds();
     int numbers[4], identifier, finger;
 
     if (count != 2 || can_open(&bus, arguments[1], 0) != 0) {
@@ -99,13 +99,13 @@ int main(int count, char **arguments)
     }
     for (finger = 0; finger < 3; finger++)
         begin_physics(&Drives[finger].physics);
-    while (can_seconds() - heard < LONGEST_SILENCE) {
+    while (can_seconds() - received < LONGEST_SILENCE) {
         identifier = can_receive(&bus, numbers, can_seconds() + 0.005);
         watch(&bus);
         finger = identifier & 0xF;
         if (identifier < 0 || finger < 1 || finger > 3)
             continue;
-        heard = can_seconds();
+        received = can_seconds();
         obey(&bus, (unsigned)(identifier - finger), finger, numbers);
     }
     return 0;

@@ -59,8 +59,8 @@ fn a_planner_waits_until_its_finger_has_settled() {
 fn every_queue_and_every_listener_gets_every_event_in_order() {
     let hand = open();
     let (first, second) = (hand.events(), hand.events());
-    let heard = Arc::new(Mutex::new(Vec::new()));
-    let noted = heard.clone();
+    let received = Arc::new(Mutex::new(Vec::new()));
+    let noted = received.clone();
     let listener = hand.on_event(move |event, _| noted.lock().expect("not poisoned").push(*event)).expect("a thread");
     for finger in 1..=3 {
         hand.send_position(finger, TARGET).expect("sent");
@@ -76,14 +76,14 @@ fn every_queue_and_every_listener_gets_every_event_in_order() {
     assert_eq!(by_first, by_second);
     assert!(by_first.is_sorted_by_key(|event| event.time), "{by_first:?}");
     let limit = Instant::now() + PATIENCE;
-    while heard.lock().expect("not poisoned").len() < by_first.len() && Instant::now() < limit {
+    while received.lock().expect("not poisoned").len() < by_first.len() && Instant::now() < limit {
         thread::yield_now();
     }
-    assert_eq!(*heard.lock().expect("not poisoned"), by_first);
+    assert_eq!(*received.lock().expect("not poisoned"), by_first);
     drop(listener);
     hand.send_position(1, [0.1, 0.5, 1.0]).expect("sent");
     wait_for(&first, EventKind::Settled);
-    assert_eq!(heard.lock().expect("not poisoned").len(), by_first.len(), "called after it was dropped");
+    assert_eq!(received.lock().expect("not poisoned").len(), by_first.len(), "called after it was dropped");
 }
 
 #[test]

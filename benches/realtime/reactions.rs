@@ -2,7 +2,7 @@
 //! element of a simulated fingertip to the first changed motor command. It is measured for the touched finger, and for
 //! the fingers in other threads.
 //!
-//! The board tells which motor command is in force when the contact begins. The records of the servos tell which
+//! The board reports which motor command is in force when the contact begins. The records of the servos show which
 //! command is the first one with the set point of the reaction. A delay is the difference of the period numbers of
 //! these two commands, so it includes the periods that a late servo skips.
 

@@ -56,9 +56,9 @@ static bool drive(struct finger *finger, const int16_t wanted[MOTORS], const uin
         int32_t torque = clip(wanted[i], limits[i]);
         uint64_t current = current_of((uint32_t)(torque < 0 ? -torque : torque), finger->traits->torque_unit, constant);
         uint32_t most = (uint32_t)finger->traits->largest_currents[i];
-        int32_t borne = (int32_t)(current > most ? most : current);
+        int32_t permitted = (int32_t)(current > most ? most : current);
         finger->torques[i] = (int16_t)torque;
-        currents[i] = torque < 0 ? -borne : borne;
+        currents[i] = torque < 0 ? -permitted : permitted;
         clipped = clipped || torque != wanted[i] || current > most;
     }
     hal_set_currents(finger->index, currents);

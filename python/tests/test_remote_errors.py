@@ -118,14 +118,14 @@ def test_a_request_that_fails_refuses_no_argument(server, remote, call, number):
     assert not isinstance(failed.value, sun2xp.Refused) and failed.value.number == number
 
 
-@pytest.mark.parametrize(("told", "name"), [(True, ": lost replies (17 ms)"), (False, "")])
-def test_a_fault_has_its_name_unless_the_server_does_not_tell_it(server, remote, monkeypatch, told, name):
+@pytest.mark.parametrize(("reported", "name"), [(True, ": lost replies (17 ms)"), (False, "")])
+def test_a_fault_has_its_name_unless_the_server_does_not_report_it(server, remote, monkeypatch, reported, name):
     """The text of the fault in a Status ends in the middle of a word. Only its beginning is shown."""
     remote.send_position(2, HOME)
     server.records["stage"][1], server.records["fault"][1] = _messages.STAGES.index("faulted"), 13
     server.status = {"fault": 13}
     server.apply()
-    if not told:
+    if not reported:
         monkeypatch.setattr(server, "get", lambda *_: [])
     with pytest.raises(sun2xp.Fault) as fault:
         remote.wait(2, timeout=0)

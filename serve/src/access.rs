@@ -91,8 +91,8 @@ impl Scope {
             rule("is answered", &["reply"], "egress", asked),
         ];
         if permission == Permission::Command {
-            // A declared publisher sends only if it is told of a subscriber.
-            rules.push(rule("is told", &["declare_subscriber"], "egress", vec![self.key("target/*")]));
+            // A declared publisher sends only if it knows of a subscriber.
+            rules.push(rule("is informed", &["declare_subscriber"], "egress", vec![self.key("target/*")]));
             rules.push(rule("commands", &["put"], "ingress", vec![self.key(&format!("target/{client}"))]));
         }
         rules
@@ -105,7 +105,7 @@ impl Scope {
         let asked = || vec![self.key("*/*"), self.key("status")];
         vec![
             rule("publishes", &["put"], "ingress", published()),
-            rule("is told", &["declare_subscriber"], "egress", published()),
+            rule("is informed", &["declare_subscriber"], "egress", published()),
             rule("subscribes", &["declare_subscriber"], "ingress", targets()),
             rule("is commanded", &["put"], "egress", targets()),
             rule("answers", &["declare_queryable"], "ingress", asked()),

@@ -122,7 +122,7 @@ impl Desk {
             }
         };
         // A Target shows that the owner is alive, even if the hand refuses it.
-        let silence = self.hear(fresh)?;
+        let silence = self.receive(fresh)?;
         match self.fingers.apply(&target.parts, &silence, now) {
             Ok(()) => {
                 self.counts.taken += 1;
@@ -138,7 +138,7 @@ impl Desk {
     }
 
     /// Notes that the owner is alive. Returns none while an acquire recovers fingers.
-    fn hear(&mut self, fresh: Fresh) -> Option<Silence> {
+    fn receive(&mut self, fresh: Fresh) -> Option<Silence> {
         let silence = self.silence.as_mut()?;
         silence.renew(fresh.seen, fresh.validity);
         Some(*silence)

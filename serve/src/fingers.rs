@@ -1,6 +1,6 @@
 //! Sends to the fingers of the hand what the owner wants of them: new parts of Targets, the rest of the way to a
-//! destination that is far ahead of a finger, and, when the owner is heard again, the set points of fingers that were
-//! caught (see [`crate::silence`]).
+//! destination that is far ahead of a finger, and, when a message of the owner arrives again, the set points of fingers
+//! that were caught (see [`crate::silence`]).
 
 mod leading;
 mod preparing;

@@ -13,10 +13,10 @@ pub const MILLISECOND: u64 = 1_000_000;
 #[derive(Clone, Copy, Debug)]
 pub struct Silence {
     /// The moment from which the validity of the newest Target counts, ns.
-    heard: u64,
+    received: u64,
     /// The validity of the newest Target, ns.
     validity: u64,
-    /// The time after `heard` at which every finger goes to its end state, ns.
+    /// The time after `received` at which every finger goes to its end state, ns.
     end: u64,
 }
 
@@ -25,12 +25,12 @@ impl Silence {
     #[must_use]
     pub fn after_acquire(now: u64, catch_ms: u32, end_ms: u32) -> Self {
         let nanoseconds = |milliseconds| u64::from(milliseconds) * MILLISECOND;
-        Self { heard: now, validity: nanoseconds(catch_ms), end: nanoseconds(end_ms) }
+        Self { received: now, validity: nanoseconds(catch_ms), end: nanoseconds(end_ms) }
     }
 
-    /// Notes the newest Target. Its validity counts from `heard`, ns.
-    pub fn renew(&mut self, heard: u64, validity: u64) {
-        (self.heard, self.validity) = (heard, validity);
+    /// Notes the newest Target. Its validity counts from `received`, ns.
+    pub fn renew(&mut self, received: u64, validity: u64) {
+        (self.received, self.validity) = (received, validity);
     }
 
     /// Returns the validity of the set point of a finger that the owner has commanded.
@@ -43,19 +43,19 @@ impl Silence {
     /// but it goes to its end state.
     #[must_use]
     pub fn of_other(&self) -> Validity {
-        Validity { hold_after: None, end_after: Some(Duration::from_nanos(self.end)), since: Some(self.heard) }
+        Validity { hold_after: None, end_after: Some(Duration::from_nanos(self.end)), since: Some(self.received) }
     }
 
     /// Returns whether the newest Target is still valid.
     #[must_use]
     pub fn is_valid(&self, now: u64) -> bool {
-        now < self.heard.saturating_add(self.validity)
+        now < self.received.saturating_add(self.validity)
     }
 
     /// Returns whether the ownership is over.
     #[must_use]
     pub fn is_over(&self, now: u64) -> bool {
-        now >= self.heard.saturating_add(self.end)
+        now >= self.received.saturating_add(self.end)
     }
 }
 

@@ -167,8 +167,8 @@ mod tests {
         for (key, gain) in gains {
             let (before, _) = include_str!("../../docs/sun2xp.toml").split_once(&format!("\n#{key} = ")).expect(key);
             let comment = before.rsplit("\n\n").next().unwrap_or_default().replace("\n# ", " ");
-            let told = format!("{} in a calibration from {GENTLE_RATE} Hz up", gain.expect("a gain"));
-            assert!(comment.contains(&told), "{told:?} is not in: {comment}");
+            let reported = format!("{} in a calibration from {GENTLE_RATE} Hz up", gain.expect("a gain"));
+            assert!(comment.contains(&reported), "{reported:?} is not in: {comment}");
         }
     }
 }

@@ -114,7 +114,7 @@ impl HandEvents {
         }
     }
 
-    /// Wraps the planner's callback in a function that tells [`in_callback`] and [`end`] whether the callback runs.
+    /// Wraps the planner's callback in a function that notes for [`in_callback`] and [`end`] whether the callback runs.
     fn guarded(&self, removed: Arc<AtomicBool>, mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
         move |event, lost| {
             let _calling = self.calling.lock();

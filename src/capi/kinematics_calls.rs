@@ -232,7 +232,7 @@ pub unsafe extern "C" fn sun2xp_palm_pose(hand: *mut sun2xp_hand, finger: c_int,
 ///   EIO      a finger is faulted; the other fingers have the new gravity, and this finger takes it when
 ///            it recovers
 ///
-/// Threads: any. Never waits for a servo. Takes some us; a simulated finger may keep the call waiting while
+/// Threads: any. Never waits for a servo. Takes a few us; a simulated finger may keep the call waiting while
 /// it computes.
 ///
 /// Example, a palm whose x axis points down:

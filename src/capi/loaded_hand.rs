@@ -113,14 +113,14 @@ fn sized<T: Copy>() -> MaybeUninit<T> {
 fn last_refusal(library: &RemoteLibrary, handle: *const sun2xp_hand) -> RemoteRefusal {
     let mut error = sized::<sun2xp_error>();
     // SAFETY: the struct has its size. On success its texts are C strings, which are valid until the next refusal.
-    let told = unsafe {
+    let reported = unsafe {
         ((library.error)(handle, error.as_mut_ptr()) == 0).then(|| {
             let error = error.assume_init();
             let text = |text: *const c_char| CStr::from_ptr(text).to_string_lossy().into_owned();
             (error.number, error.system_errno, text(error.call), text(error.text), text(error.remedy))
         })
     };
-    let Some((number, errno, call, text, remedy)) = told.filter(|told| told.0 != 0) else {
+    let Some((number, errno, call, text, remedy)) = reported.filter(|reported| reported.0 != 0) else {
         let text = "libsun2xp_remote gave no reason: please report this defect of the library".into();
         return RemoteRefusal::Other { number: SUN2XP_ERROR_DEFECT, errno: libc::EIO, text, actions: Vec::new() };
     };

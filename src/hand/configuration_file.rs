@@ -163,12 +163,12 @@ impl Configured {
     /// Reports in one line that some of these fingers are simulated although the configuration does not request it. If
     /// there is a configuration file, the line names the fingers.
     pub fn announce(&self, fingers: Fingers) {
-        if let Some(line) = self.announcement(fingers) {
+        if let Some(line) = self.notice(fingers) {
             print_notice(&line);
         }
     }
 
-    fn announcement(&self, fingers: Fingers) -> Option<String> {
+    fn notice(&self, fingers: Fingers) -> Option<String> {
         let Some(file) = &self.file else {
             if self.said.ports == [true; FINGERS] {
                 return None;
@@ -191,7 +191,7 @@ impl Configured {
     }
 }
 
-/// The announcement of a hand that is simulated because there is no configuration file.
+/// The notice of a hand that is simulated because there is no configuration file.
 fn without_file(raised_privileges: bool) -> String {
     if raised_privileges {
         let file = place::SYSTEM_FILE;
@@ -208,7 +208,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_announcement_of_a_missing_file_says_where_to_describe_a_real_hand() {
+    fn the_notice_of_a_missing_file_says_where_to_describe_a_real_hand() {
         for (raised, file) in [(false, "sun2xp.toml"), (true, place::SYSTEM_FILE)] {
             let said = without_file(raised);
             assert!(said.contains("to use a real hand, describe it in") && said.contains(file), "{said}");
@@ -233,11 +233,11 @@ mod tests {
         ] {
             let (configuration, said) = text::parse(text).expect("usable");
             let configured = Configured { configuration, file: Some("the/file".into()), said };
-            let announcement = configured.announcement(Fingers::ALL);
+            let notice = configured.notice(Fingers::ALL);
             match expected {
-                None => assert_eq!(announcement, None),
+                None => assert_eq!(notice, None),
                 Some(expected) => {
-                    let said = announcement.unwrap_or_else(|| panic!("no announcement for {text:?}"));
+                    let said = notice.unwrap_or_else(|| panic!("no notice for {text:?}"));
                     assert!(said.starts_with(&format!("the/file names no port {expected} (")), "{said}");
                 }
             }
@@ -276,8 +276,8 @@ mod tests {
         let text = "[finger.1]\nport = 'simulated'\n";
         let (configuration, said) = text::parse(text).expect("usable");
         let configured = Configured { configuration, file: Some("the/file".into()), said };
-        assert_eq!(configured.announcement(Fingers::only(1).expect("finger 1")), None);
-        let said = configured.announcement(Fingers::only(3).expect("finger 3")).expect("an announcement");
+        assert_eq!(configured.notice(Fingers::only(1).expect("finger 1")), None);
+        let said = configured.notice(Fingers::only(3).expect("finger 3")).expect("a notice");
         assert!(said.contains("for finger 3: it is simulated"), "{said}");
     }
 }

@@ -7,8 +7,9 @@ use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredGau
 use crate::model::{FingerNumber, Fingers, Section, ShownPath, UnusableConfiguration};
 use std::path::Path;
 
-/// Largest factor between a gauge's calibrated scale and the step in which tensions are stored, in either direction.
-/// The hardware gives tensions in N, so a calibration changes the scale of a gauge by only some per cent.
+/// Largest ratio of a gauge's calibrated scale to `tension_unit`, and of `tension_unit` to this scale. The library
+/// converts the tensions of the hardware, N, into counts of the size `tension_unit`, so a calibration changes the scale
+/// of a gauge by only some per cent.
 const LARGEST_RATIO: f64 = 2.0;
 
 /// Largest distance of a gauge's calibrated zero from [`ZERO_COUNT`], counts.
@@ -139,7 +140,7 @@ pub(super) fn warn_of_doubtful_zero(number: FingerNumber) {
     ));
 }
 
-/// Prints a notice if a USB adapter delays bytes, because then every cycle loses its reply.
+/// Prints a notice if a USB adapter delays bytes, because then cycles lose their replies.
 fn warn_of_latency(port: &Port) {
     if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
         print_notice(&format!(

@@ -9,9 +9,9 @@ use crate::model::Links;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 
 /// Time in which every motion must decay to 1/e, s. At 1000 Hz every eigenvalue of the one-cycle map then has a modulus
-/// below about 1 - 1e-4. Most slow motions of the default finger take 1.2 s with state feedback. The slowest takes 5 s,
-/// with the controller of Figure 11 of COINS TR 90-48 and an almost straight finger. So this margin excludes no motion
-/// that is merely slow.
+/// below about 1 - 1e-4. With state feedback, the slow motions of the default finger usually decay to 1/e in 1.2 s. The
+/// slowest motion of all takes 5 s, with the controller of Figure 11 of COINS TR 90-48 and an almost straight finger.
+/// So this margin excludes no motion that is merely slow.
 const DECAY_TIME: f64 = 10.0;
 
 /// A stiffness that no pose supports, N/cm. The servo scales it down to the supported stiffness.

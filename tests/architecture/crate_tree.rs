@@ -73,7 +73,7 @@ impl SourceFile {
 }
 
 /// The names that a `use` in `module` imports, with their paths from the crate's root. A path to another crate cannot
-/// be told from a path below `module`, so it gets the path of `module` in front.
+/// be distinguished from a path below `module`, so it gets the path of `module` in front.
 pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
     fn walk(tree: &UseTree, before: &[String], found: &mut Vec<(String, Vec<String>)>) {
         let with = |name: &dyn ToString| [before, &[name.to_string()]].concat();

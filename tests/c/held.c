@@ -34,7 +34,7 @@ static int servo(void)
     return number;
 }
 
-/* Runs in a child: stops the thread, tells the parent, and releases the thread when the parent asks for it. */
+/* Runs in a child: stops the thread, notifies the parent, and releases the thread when the parent asks for it. */
 static void hold(int thread, int held, int go)
 {
     char byte = 0;

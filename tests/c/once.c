@@ -7,15 +7,15 @@
 int main(void)
 {
     float Poses[2][3] = {{0.0f, 0.5f, 0.9f}, {0.1f, 0.5f, 0.9f}};
-    float Heard[2][3];
-    float (*Row)[3] = Poses, (*Into)[3] = Heard;
+    float Received[2][3];
+    float (*Row)[3] = Poses, (*Into)[3] = Received;
     int finger = 1;
 
     CHECK(OpenHand() == 0);
     CHECK(SendPos(finger++, *Row++) == 0);
     CHECK(finger == 2 && Row == Poses + 1);
     CHECK(GetPos(finger++, *Into++) == 0);
-    CHECK(finger == 3 && Into == Heard + 1);
+    CHECK(finger == 3 && Into == Received + 1);
     CHECK(SendPos(1, (double[]){0.0, 0.5, 0.9}) == 0);
     CHECK(SendKx(1, (float[3][3]){{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}) == 0);
     if (finger == 3)

@@ -1,4 +1,4 @@
-/* Makes calls with several errors at once. Each call has one error fewer than the previous call of the same function.
+/* Makes calls with several errors at once. Most calls have one error fewer than the previous call of the same function.
    Prints a line for each refused call: its name and the errno of its refusal. Finger 1 is at the port of
    `sun2xp board`. The library itself simulates the other fingers. */
 #include <errno.h>

@@ -173,12 +173,12 @@ fn a_gain_that_a_controller_does_not_have_is_refused_and_its_comment_says_so() {
             read(&text).is_err()
         };
         let figures: Vec<&str> = ["9", "10", "11"].into_iter().filter(refuses).collect();
-        let told = match figures[..] {
+        let reported = match figures[..] {
             [] => continue,
             [figure] => format!("Refused with figure {figure}"),
             _ => format!("Refused with figures {}", figures.join(" and ")),
         };
-        assert!(key.comment.contains(&told), "{}: {told:?} is not in {:?}", key.name, key.comment);
+        assert!(key.comment.contains(&reported), "{}: {reported:?} is not in {:?}", key.name, key.comment);
         refused += 1;
     }
     assert_eq!(refused, 2);

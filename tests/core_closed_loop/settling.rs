@@ -1,4 +1,5 @@
-//! A finger settles at its target with every scheme of the report and at every rate, and is the commanded spring there.
+//! A finger settles at its target with every scheme of the report at 500, 1000 and 2000 Hz. With Figure 10, it is the
+//! commanded spring there.
 
 use super::rig::{Loop, SETTLED, finger_with, poses, spring};
 use nalgebra::Vector3;

@@ -240,7 +240,7 @@ fn drift(bench: &mut Bench) -> Injected {
     inject(bench, Defect::DriftingGauge { gauge, speed: 20.0 * way });
     let mut drift = Vector4::zeros();
     drift[usize::from(gauge) - 1] = 20.0 * way;
-    // The monitor compares gauges and encoders by one equation (`control/monitors/agreement.rs`), which cannot tell
+    // The monitor compares gauges and encoders by one equation (`control/monitors/agreement.rs`), which cannot show
     // which of the four gauges is wrong. The fault names the gauge that differs most from the pull of its motor. This
     // need not be the wrong one, so the part is not checked.
     Injected { part: None, drift }

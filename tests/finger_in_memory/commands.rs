@@ -71,7 +71,7 @@ fn one_and_five_per_cent_of_lost_and_damaged_commands_are_no_fault() {
 }
 
 #[test]
-fn commands_that_come_late_twice_or_in_another_order_are_no_fault() {
+fn delayed_duplicated_or_reordered_commands_are_no_fault() {
     let late = LineFault::Delay(300_000);
     for fault in [late, LineFault::Duplicate, LineFault::Reorder] {
         let mut bench = Bench::new();

@@ -58,7 +58,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     forgetful.order("zero-lost 2");
     refused(&forgetful, FaultKind::ZeroLost);
     assert!(!forgetful.state(2).has(Status::ENABLED) && forgetful.state(2).limp());
-    forgetful.order("mend 2");
+    forgetful.order("repair 2");
     recovers_despite_pauses(&hand, 2, &[forgetful.process()]);
     goes(&hand, 2, TARGET);
     close(hand);

@@ -265,7 +265,7 @@ fn a_finger_that_was_refused_for_its_lost_zero_recovers_when_it_is_back() {
         let error = hand.recover(2).expect_err("without its zero");
         assert!(matches!(error, HandError::Faulted { fault, .. } if fault.kind == FaultKind::ZeroLost), "{error}");
     }
-    boards[1].order("mend 2");
+    boards[1].order("repair 2");
     recovers(&hand, 2);
     goes(&hand, 2, TARGET);
     close(hand);

@@ -254,16 +254,17 @@ fn the_committed_header_with_handles_is_the_one_of_the_exports() {
 fn the_abi_has_one_number() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |path: &str| fs::read_to_string(root.join(path)).expect("a source file");
-    let number = |text: &str, before: &str| {
+    let number = |path: &str, before: &str| {
+        let text = read(path);
         let (_, rest) =
-            text.split_once(before).unwrap_or_else(|| panic!("no source has {before:?}: correct this test"));
+            text.split_once(before).unwrap_or_else(|| panic!("{path} does not contain {before:?}: correct this test"));
         rest.split([';', '\n']).next().map(str::to_string).expect("a number")
     };
-    let of_build = number(&read("build.rs"), "const ABI: u32 = ");
-    assert_eq!(of_build, number(&read("src/capi/version_calls.rs"), "const SUN2XP_ABI_VERSION: c_uint = "));
+    let of_build = number("build.rs", "const ABI: u32 = ");
+    assert_eq!(of_build, number("src/capi/version_calls.rs", "const SUN2XP_ABI_VERSION: c_uint = "));
     assert_eq!(
         of_build,
-        number(&read("include/sun2xp.h"), "#define SUN2XP_ABI_VERSION").split_whitespace().next().expect("a number")
+        number("include/sun2xp.h", "#define SUN2XP_ABI_VERSION").split_whitespace().next().expect("a number")
     );
 }
 

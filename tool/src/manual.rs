@@ -5,7 +5,7 @@ mod body;
 mod calls;
 mod configuration;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unreadable, unwritable};
 use clap::Command;
 use clap_mangen::roff::Roff;
 use std::fs;
@@ -40,8 +40,8 @@ struct Page {
 
 pub fn run(arguments: &Arguments, command: Command) -> Result<(), Failure> {
     let tool = arguments.folder.join("man1");
-    fs::create_dir_all(&tool)?;
-    clap_mangen::generate_to(command, &tool)?;
+    fs::create_dir_all(&tool).map_err(|error| unwritable(&tool, &error))?;
+    clap_mangen::generate_to(command, &tool).map_err(|error| unwritable(&tool, &error))?;
     let mut pages = vec![configuration::page(CONFIGURATION)];
     for path in &arguments.headers {
         let header = Header::read(path)?;
@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments, command: Command) -> Result<(), Failure> {
 impl Header {
     fn read(path: &Path) -> Result<Self, Failure> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Self { name, text: fs::read_to_string(path)? })
+        Ok(Self { name, text: fs::read_to_string(path).map_err(|error| unreadable(path, &error))? })
     }
 }
 
@@ -65,12 +65,13 @@ impl Page {
     fn write(self, folder: &Path) -> Result<(), Failure> {
         let Self { name, section, text } = self;
         let folder = folder.join(format!("man{section}"));
-        fs::create_dir_all(&folder)?;
+        fs::create_dir_all(&folder).map_err(|error| unwritable(&folder, &error))?;
         let version = concat!("sun2xp ", env!("CARGO_PKG_VERSION"));
         let mut page = Roff::new();
         page.control("TH", [name.as_str(), &section.to_string(), "", version, "sun2xp"]);
         page.extend([text]);
-        Ok(fs::write(folder.join(format!("{name}.{section}")), page.render())?)
+        let file = folder.join(format!("{name}.{section}"));
+        fs::write(&file, page.render()).map_err(|error| unwritable(&file, &error))
     }
 }
 
@@ -89,6 +90,19 @@ mod tests {
     fn page(name: &str) -> String {
         let pages = headers().into_iter().flat_map(|header| calls::pages(&header));
         pages.into_iter().find(|page| page.name == name).expect("a page").text.render()
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_or_written_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let missing = folder.path().join("missing.h");
+        let failure = Header::read(&missing).err().expect("missing").to_string();
+        assert!(failure.contains("missing.h") && failure.contains("Name an existing file"), "{failure}");
+        let file = folder.path().join("file");
+        fs::write(&file, "").expect("written");
+        let page = Page { name: "page".into(), section: 3, text: Roff::new() };
+        let failure = page.write(&file).expect_err("no folder").to_string();
+        assert!(failure.contains("cannot write") && failure.contains("file/man3"), "{failure}");
     }
 
     #[test]

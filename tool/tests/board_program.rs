@@ -103,7 +103,7 @@ fn defects_occur_while_the_board_runs_and_are_repaired() {
     let port = board.line();
     let tensions = |board: &mut Board| numbers(&board.order("state 1"), "tensions", 4);
     assert_eq!(tensions(&mut board)[1], 0.0, "cut by --order");
-    assert_eq!(board.order("mend 1"), "ok");
+    assert_eq!(board.order("repair 1"), "ok");
     assert!(tensions(&mut board)[1] > 1.0);
     for order in ["jam 7 1", "state 7"] {
         assert_eq!(
@@ -116,7 +116,7 @@ fn defects_occur_while_the_board_runs_and_are_repaired() {
     let without_elements = "error finger 1 has no tactile element with this number: see finger.touch.elements";
     assert_eq!(board.order("dead-element 1 0"), without_elements);
     let answer = board.order("shove 1");
-    let orders = ["force", "state", "cut", "drift-gauge", "mend", "drop", "commands", "unplug", "replug"];
+    let orders = ["force", "state", "cut", "drift-gauge", "repair", "drop", "commands", "unplug", "replug"];
     assert!(answer.starts_with("error there is no order shove: "), "{answer}");
     assert!(orders.iter().all(|order| answer.contains(&format!(" {order}"))), "{answer}");
 
@@ -178,11 +178,11 @@ fn values_of_the_simulation_are_checked_although_the_file_names_a_port() {
     let text = "[finger.1]\nport = '/dev/ttyUSB0'\n[finger.1.simulation]\nrotor_inertia = [1e-8, 1e-8, 1e-8, 1e-8]\n\
                 tendon_stiffness = [3000, 3000, 3000, 3000]\n[finger.geometry]\nmotor_radius = [0.2, 0.2, 0.2, 0.2]\n\
                 [finger.2]\nport = '/dev/ttyUSB1'\n[finger.3]\nport = '/dev/ttyUSB2'\n";
-    let (status, told) = run(text, "1");
-    assert_eq!(status, Some(1), "{told}");
-    assert!(told.contains("hand.toml:4: finger.1.simulation.rotor_inertia: "), "{told}");
+    let (status, reported) = run(text, "1");
+    assert_eq!(status, Some(1), "{reported}");
+    assert!(reported.contains("hand.toml:4: finger.1.simulation.rotor_inertia: "), "{reported}");
     // A hand would refuse this file, because only finger 1 names a port. `sun2xp board` accepts it, because the other
     // fingers of the file are on other boards.
-    let (status, told) = run("[finger.1]\nport = '/dev/ttyUSB0'\n", "1");
-    assert_eq!(status, Some(0), "{told}");
+    let (status, reported) = run("[finger.1]\nport = '/dev/ttyUSB0'\n", "1");
+    assert_eq!(status, Some(0), "{reported}");
 }

@@ -50,8 +50,8 @@ fn output(arguments: &[&str]) -> String {
 
 #[test]
 fn the_tool_prints_the_bound_of_every_plant_and_takes_the_least() {
-    let told: Value = serde_json::from_str(&output(&["--samples", "10", "--json"])).expect("JSON");
-    let finger = &told["fingers"][0];
+    let reported: Value = serde_json::from_str(&output(&["--samples", "10", "--json"])).expect("JSON");
+    let finger = &reported["fingers"][0];
     let plants = finger["set"]["plants"].as_array().expect("an array");
     let places = |walls: bool| plants.iter().filter(move |plant| plant["walls"] == walls);
     let names: Vec<&str> = places(false).filter_map(|plant| plant["plant"].as_str()).collect();

@@ -157,15 +157,15 @@ fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     let stored = fs::read_to_string(desk.file()).expect("there");
     let output = desk.calibrate(&["--finger", "1", "--zero", "--json", "--dry-run"], "");
     assert_eq!(fs::read_to_string(desk.file()).expect("there"), stored);
-    let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"));
-    assert_eq!((&told["written"], told["fingers"].as_array().map(Vec::len)), (&Value::Null, Some(1)));
-    let finger = &told["fingers"][0];
+    let reported: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"));
+    assert_eq!((&reported["written"], reported["fingers"].as_array().map(Vec::len)), (&Value::Null, Some(1)));
+    let finger = &reported["fingers"][0];
     let error = &finger["measured"][0];
     assert_eq!(error["name"], "joint angle errors before zeroing, degrees");
     let degrees = |of: &Value| of.as_f64().is_some_and(|degrees| degrees.abs() < 1.0);
     assert!(
         error["values"].as_array().is_some_and(|joints| joints.len() == 3 && joints.iter().all(degrees)),
-        "{told:#}"
+        "{reported:#}"
     );
     let value = |key: &str| finger["values"].as_array().and_then(|all| all.iter().find(|value| value["key"] == key));
     let zero = value("encoder.zero").expect("a value");

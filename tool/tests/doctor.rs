@@ -17,10 +17,10 @@ fn examined(configuration: &str) -> Vec<Value> {
     let file = folder.path().join("named.toml");
     fs::write(&file, configuration).expect("written");
     let run = doctor(&file, &["--json"]);
-    let told: Value = serde_json::from_slice(&run.0).unwrap_or_else(|error| panic!("{error}: {run:?}"));
-    let findings = told["findings"].as_array().expect("an array").clone();
+    let reported: Value = serde_json::from_slice(&run.0).unwrap_or_else(|error| panic!("{error}: {run:?}"));
+    let findings = reported["findings"].as_array().expect("an array").clone();
     let failed = findings.iter().any(|finding| finding["verdict"] == "failure");
-    assert_eq!((told["pass"].as_bool(), run.1), (Some(!failed), Some(i32::from(failed))), "{told:#}");
+    assert_eq!((reported["pass"].as_bool(), run.1), (Some(!failed), Some(i32::from(failed))), "{reported:#}");
     for finding in &findings {
         let good = finding["verdict"] == "good";
         assert_eq!(good, finding["advice"] == "", "what is not good has a remedy: {finding:#}");
@@ -36,7 +36,7 @@ fn doctor(configuration: &Path, options: &[&str]) -> (Vec<u8>, Option<i32>) {
 }
 
 fn find<'a>(findings: &'a [Value], subject: &str) -> &'a Value {
-    let of = |finding: &&Value| finding["subject"].as_str().is_some_and(|told| told.starts_with(subject));
+    let of = |finding: &&Value| finding["subject"].as_str().is_some_and(|reported| reported.starts_with(subject));
     findings.iter().find(of).unwrap_or_else(|| panic!("no {subject}: {findings:#?}"))
 }
 
@@ -49,7 +49,9 @@ fn the_simulated_hand_is_examined_whole() {
         find(&findings, subject);
     }
     let measured = |name: &'static str| {
-        findings.iter().filter(move |finding| finding["subject"].as_str().is_some_and(|told| told.starts_with(name)))
+        findings
+            .iter()
+            .filter(move |finding| finding["subject"].as_str().is_some_and(|reported| reported.starts_with(name)))
     };
     assert_eq!((measured("wake-up").count(), measured("port").count(), measured("round trip").count()), (3, 3, 3));
     for finding in measured("round trip") {
@@ -58,7 +60,8 @@ fn the_simulated_hand_is_examined_whole() {
         assert!(found.starts_with("median ") && found.contains("of 41 lost"), "{found}");
         assert_ne!(finding["verdict"], "failure", "a simulated board has no port that could fail: {finding:#}");
     }
-    let simulated = |finding: &Value| finding["found"].as_str().is_some_and(|told| told.contains("simulated board"));
+    let simulated =
+        |finding: &Value| finding["found"].as_str().is_some_and(|reported| reported.contains("simulated board"));
     assert!(measured("port").all(simulated), "{findings:#?}");
     let cores = find(&findings, "cores")["found"].as_str().expect("a text");
     assert!(cores.starts_with("configured: none") && !cores.contains('['), "{cores}");
@@ -92,14 +95,14 @@ fn the_report_is_readable_and_an_invalid_configuration_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("named.toml");
     fs::write(&file, "").expect("written");
-    let (told, _) = doctor(&file, &[]);
-    let told = String::from_utf8(told).expect("text");
+    let (reported, _) = doctor(&file, &[]);
+    let reported = String::from_utf8(reported).expect("text");
     // A pipe receives one line of aligned text for each finding, and its advice in a line of its own.
     let subjects = ["kernel", "cores", "locked memory"];
-    let columns = subjects.map(|subject| told.lines().find_map(|line| line.find(&format!("  {subject}  "))));
-    assert_eq!(columns, [Some("warning".len()); 3], "{told}");
-    assert!(!told.contains('\u{1b}'), "{told}");
-    assert!(told.ends_with("pass\n") || told.ends_with("fail\n"), "{told}");
+    let columns = subjects.map(|subject| reported.lines().find_map(|line| line.find(&format!("  {subject}  "))));
+    assert_eq!(columns, [Some("warning".len()); 3], "{reported}");
+    assert!(!reported.contains('\u{1b}'), "{reported}");
+    assert!(reported.ends_with("pass\n") || reported.ends_with("fail\n"), "{reported}");
 
     // No controller can run with the values of the second configuration.
     for text in ["[hand]\nrat = 1\n", "[finger.tendon]\nmaximum = 10\n"] {
@@ -115,7 +118,7 @@ fn values_that_open_hand_would_refuse_are_reported_with_file_and_line() {
     fs::write(&file, "[hand]\nrate = 1000\n[finger.2.motor]\nviscous_friction = [1, 1, 1, 1]\n").expect("written");
     let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
     let run = command.args(["doctor", "--seconds", "0.5", "--config"]).arg(&file).output().expect("it starts");
-    let told = String::from_utf8(run.stderr).expect("text");
-    assert_eq!(run.status.code(), Some(1), "{told}");
-    assert!(told.contains("named.toml:4: finger.2.motor.viscous_friction: "), "{told}");
+    let reported = String::from_utf8(run.stderr).expect("text");
+    assert_eq!(run.status.code(), Some(1), "{reported}");
+    assert!(reported.contains("named.toml:4: finger.2.motor.viscous_friction: "), "{reported}");
 }

@@ -102,20 +102,20 @@ fn other_programs_receive_json() {
         let output = schedule_with("[finger.2]\ncore = 1\n", costs, &["--json"]);
         (output.status.code(), serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}")))
     };
-    let (status, told) = run(COSTS);
-    assert_eq!((status, &told["pass"], &told["rate"]), (Some(0), &json!(true), &json!(1000.0)));
-    assert_eq!(told["costs"], json!({"wake_up": 100.0, "write": 10.0, "read": 5.0, "compute": 15.0}));
-    assert_eq!((&told["source"], &told["virtual_machine"]), (&json!("file"), &json!(false)));
-    let second = &told["configured"]["threads"][1];
+    let (status, reported) = run(COSTS);
+    assert_eq!((status, &reported["pass"], &reported["rate"]), (Some(0), &json!(true), &json!(1000.0)));
+    assert_eq!(reported["costs"], json!({"wake_up": 100.0, "write": 10.0, "read": 5.0, "compute": 15.0}));
+    assert_eq!((&reported["source"], &reported["virtual_machine"]), (&json!("file"), &json!(false)));
+    let second = &reported["configured"]["threads"][1];
     assert_eq!((&second["thread"], &second["core"], &second["fingers"]), (&json!(2), &json!(1), &json!([2])));
     assert_eq!(second["limit"], Value::Null, "{second:#}");
-    let fastest = told["configured"]["fastest"]["rate"].as_u64().expect("a rate");
-    assert!(told["with_sensor"]["fastest"]["rate"].as_u64().is_some_and(|rate| rate < fastest), "{told:#}");
-    assert_eq!(told["with_sensor"]["sensor"], json!({"bytes": 10, "compute": 50.0}));
+    let fastest = reported["configured"]["fastest"]["rate"].as_u64().expect("a rate");
+    assert!(reported["with_sensor"]["fastest"]["rate"].as_u64().is_some_and(|rate| rate < fastest), "{reported:#}");
+    assert_eq!(reported["with_sensor"]["sensor"], json!({"bytes": 10, "compute": 50.0}));
 
-    let (status, told) = run(&COSTS.replace("100", "1600"));
-    assert_eq!((status, &told["pass"]), (Some(1), &json!(false)));
-    let fastest = &told["configured"]["fastest"];
+    let (status, reported) = run(&COSTS.replace("100", "1600"));
+    assert_eq!((status, &reported["pass"]), (Some(1), &json!(false)));
+    let fastest = &reported["configured"]["fastest"];
     assert_eq!(fastest, &json!({"rate": null, "limit": {"missed": "cycle", "thread": 1}}));
 }
 
@@ -129,12 +129,12 @@ fn a_virtual_machine_is_named_where_its_times_are_measured() {
         tool.args(["schedule", "--measure", "1"]).args(options).current_dir(folder.path());
         tool.env_remove("SUN2XP_CONFIG").output().expect("the tool runs").stdout
     };
-    let told: Value = serde_json::from_slice(&run(&["--json"])).expect("JSON");
+    let reported: Value = serde_json::from_slice(&run(&["--json"])).expect("JSON");
     let text = String::from_utf8(run(&["--p999"])).expect("text");
     assert!(text.starts_with("99.9 % values, us: wake-up "), "{text}");
-    assert_eq!(told["virtual_machine"], text.contains("This machine is virtual. Its host may pause it"), "{text}");
+    assert_eq!(reported["virtual_machine"], text.contains("This machine is virtual. Its host may pause it"), "{text}");
     let flag = std::fs::read_to_string("/proc/cpuinfo").expect("there").contains(" hypervisor");
-    assert!(!flag || told["virtual_machine"] == true, "the kernel knows a hypervisor: {told:#}");
+    assert!(!flag || reported["virtual_machine"] == true, "the kernel knows a hypervisor: {reported:#}");
 }
 
 #[test]

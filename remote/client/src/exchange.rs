@@ -33,7 +33,7 @@ impl Exchange {
     /// Takes a State that was received at the time `now`, ns on the client's clock.
     pub fn take_state(&mut self, state: &State, now: u64) {
         let continued = self.view.take_state(state, now);
-        self.outbox.heard(state.time, state.owner, continued);
+        self.outbox.received(state.time, state.owner, continued);
         if self.outbox.ownership().is_ok_and(|ownership| ownership.number == state.owner) {
             for record in &state.records {
                 self.outbox.confirm(record.finger, record.command);

@@ -87,7 +87,7 @@ impl RemoteHand {
         self.link.release()
     }
 
-    /// Whether this client owns the hand, as far as it has heard.
+    /// Whether this client owns the hand, as far as it knows.
     #[must_use]
     pub fn is_owner(&self) -> bool {
         self.link.shared.lock().outbox.ownership().is_ok()

@@ -223,7 +223,7 @@ fn send(shared: &Shared, session: &Session, key: &KeyExpr<'_>) {
             drop(exchange);
             // A Target that is lost, or that cannot be sent now, is repeated.
             if let Ok(payload) = target.encode() {
-                // The session itself sends. A declared publisher would send nothing until it is told of a subscriber.
+                // The session itself sends. A declared publisher would send nothing until it knows of a subscriber.
                 let put = session.put(key, payload).congestion_control(CongestionControl::Drop);
                 let _ = put.priority(Priority::RealTime).express(true).wait();
             }

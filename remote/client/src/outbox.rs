@@ -96,7 +96,7 @@ impl Outbox {
 
     /// Notes the time and the owner of a State that was received. `continued` is false if the server was started again
     /// since the previous State.
-    pub fn heard(&mut self, time: u64, owner: u64, continued: bool) {
+    pub fn received(&mut self, time: u64, owner: u64, continued: bool) {
         if let Ok(Ownership { number, since, .. }) = self.ownership {
             // A State that is not later than the Answer may show an earlier owner. It may also be the first State of a
             // server that was started again and then gave this epoch: `continued` is false then, but this epoch has

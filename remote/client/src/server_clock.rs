@@ -17,7 +17,7 @@ pub struct ServerClock {
 
 impl ServerClock {
     /// Notes that a message with this time of publication, ns of the server's clock, was received now.
-    pub fn heard(&mut self, published: u64, now: u64) {
+    pub fn received(&mut self, published: u64, now: u64) {
         if self.smallest[1].is_none() || now.saturating_sub(self.begin) > WINDOW {
             self.smallest = [self.smallest[1], None];
             self.begin = now;
@@ -27,7 +27,7 @@ impl ServerClock {
     }
 
     /// Returns the age of something that happened at this time, ns of the server's clock. Returns none if nothing was
-    /// heard yet.
+    /// received yet.
     pub fn age(&self, happened: u64, now: u64) -> Option<u64> {
         let smallest = self.smallest.iter().flatten().min()?;
         let difference = now.wrapping_sub(happened) as i64;
@@ -46,7 +46,7 @@ mod tests {
         for server in [0, 5_000_000 * MS, u64::MAX - 1_000_000 * MS] {
             let mut clock = ServerClock::default();
             assert_eq!(clock.age(server, 7 * MS), None);
-            clock.heard(server, 7 * MS);
+            clock.received(server, 7 * MS);
             assert_eq!(clock.age(server, 7 * MS), Some(0));
             assert_eq!(clock.age(server, 50 * MS), Some(43 * MS));
         }
@@ -55,8 +55,8 @@ mod tests {
     #[test]
     fn a_message_that_was_delayed_is_old() {
         let mut clock = ServerClock::default();
-        clock.heard(1000 * MS, 2000 * MS);
-        clock.heard(1010 * MS, 2310 * MS);
+        clock.received(1000 * MS, 2000 * MS);
+        clock.received(1010 * MS, 2310 * MS);
         assert_eq!(clock.age(1010 * MS, 2310 * MS), Some(300 * MS));
     }
 
@@ -65,7 +65,7 @@ mod tests {
         let mut clock = ServerClock::default();
         for step in 0..360_000u64 {
             // In an hour of States every 10 ms, the server's clock falls 360 ms behind.
-            clock.heard(step * 9_999_000, step * 10 * MS);
+            clock.received(step * 9_999_000, step * 10 * MS);
             let age = clock.age(step * 9_999_000, step * 10 * MS).expect("an age");
             assert!(age <= 2_100_000, "step {step}: {age} ns");
         }
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn a_time_in_the_future_has_the_age_0() {
         let mut clock = ServerClock::default();
-        clock.heard(1000 * MS, 2000 * MS);
+        clock.received(1000 * MS, 2000 * MS);
         assert_eq!(clock.age(1100 * MS, 2000 * MS), Some(0));
     }
 }

@@ -30,7 +30,7 @@ pub struct View {
     /// The newest Status.
     status: Option<Status>,
     /// The time at which the newest State was received, ns.
-    heard: Option<u64>,
+    received: Option<u64>,
     /// The number and the time of the newest State.
     newest_state: Option<(u64, u64)>,
     /// The error of the newest message that could not be decoded.
@@ -51,8 +51,8 @@ impl View {
         let statistics = &mut self.statistics;
         statistics.lost_states = statistics.lost_states.saturating_add(lost);
         statistics.missing_cycles += u64::from(state.missing);
-        self.clock.heard(state.time, now);
-        self.heard = Some(now);
+        self.clock.received(state.time, now);
+        self.received = Some(now);
         for record in &state.records {
             self.newest[record.finger.index()] = Some(*record);
         }
@@ -96,6 +96,6 @@ impl View {
 
     /// The time since the newest State, ns.
     pub fn silence(&self, now: u64) -> Option<u64> {
-        self.heard.map(|heard| now.saturating_sub(heard))
+        self.received.map(|received| now.saturating_sub(received))
     }
 }

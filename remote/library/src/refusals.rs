@@ -153,7 +153,7 @@ mod tests {
         let mut fault = Fault::of(FaultKind::BrokenTendon, 0.2);
         fault.part = Part::Tendon(3);
         let local = HandError::Faulted { finger: FingerNumber::ALL[0], fault }.to_string();
-        let told = |text: &str| {
+        let reported = |text: &str| {
             let (finger, fault) = (Finger::ALL[0], FaultKind::BrokenTendon.number().into());
             let name = FaultText::beginning_of(text).fault().into();
             match refusal(RemoteError::Faulted { finger, fault, name }) {
@@ -161,10 +161,10 @@ mod tests {
                 _ => panic!("not the refusal of a fault"),
             }
         };
-        let (text, actions) = told(&fault.to_string());
+        let (text, actions) = reported(&fault.to_string());
         assert_eq!(text, local);
         assert_eq!(actions, FaultKind::BrokenTendon.description().actions);
-        let (text, _) = told("");
+        let (text, _) = reported("");
         assert!(text.starts_with("finger 1 is faulted (fault 2): broken tendon: "), "{text}");
     }
 }

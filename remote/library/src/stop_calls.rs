@@ -60,29 +60,29 @@ mod tests {
     use super::*;
     use std::sync::mpsc::{Sender, channel};
 
-    struct Told {
+    struct Informed {
         to: Sender<()>,
         /// Whether the next stop arrives. Every later stop arrives.
         arrives: AtomicBool,
     }
 
-    impl Stoppable for Told {
+    impl Stoppable for Informed {
         fn stop_every_finger(&self) -> bool {
             let _ = self.to.send(());
             self.arrives.swap(true, Ordering::Relaxed)
         }
     }
 
-    /// Makes a stop call during the opening, and waits until the hand was told to stop this many times.
+    /// Makes a stop call during the opening, and waits until the hand was asked to stop this many times.
     fn stopped(arrives: bool, times: usize) {
         let seen = stop_calls();
         sun2xp::stop_all();
-        let (to, told) = channel();
-        let hand = Arc::new(Told { to, arrives: AtomicBool::new(arrives) });
+        let (to, stopped) = channel();
+        let hand = Arc::new(Informed { to, arrives: AtomicBool::new(arrives) });
         let watch = StopCalls::watch(Arc::downgrade(&hand), seen);
         assert!(watch.is_ok());
         for _ in 0..times {
-            assert_eq!(told.recv_timeout(Duration::from_secs(20)), Ok(()));
+            assert_eq!(stopped.recv_timeout(Duration::from_secs(20)), Ok(()));
         }
     }
 

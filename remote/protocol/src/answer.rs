@@ -19,9 +19,9 @@ pub struct Answer {
     pub epoch: u64,
     /// Time, ns, server's clock: a value for [`Target::seen`](crate::Target::seen).
     pub time: u64,
-    /// For the refusal of a Target: its sequence number. For an acquire that is done: the number of the new epoch,
-    /// which is higher than the number of every earlier epoch. States show it as [`State::owner`](crate::State::owner).
-    /// Otherwise 0.
+    /// For the refusal of a Target: its sequence number. For an acquire that is done: the public number by which the
+    /// server counts the new epoch (the epoch itself is random and secret). It is higher than the number of every
+    /// earlier epoch. States show it as [`State::owner`](crate::State::owner). Otherwise 0.
     pub number: u64,
     /// The cause and the remedy; empty if the code is [`Code::Done`].
     pub text: String,

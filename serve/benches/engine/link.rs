@@ -64,6 +64,6 @@ pub trait Link {
     fn flood(&mut self, message: &[u8], count: u64, sending: Sending) -> Result<(), Failure>;
 }
 
-/// The first byte of a message tells the server whether to send the message back, or only to read it.
+/// The first byte of a message determines whether the server sends the message back, or only reads it.
 pub const ANSWER: u8 = 0;
 pub const ABSORB: u8 = 1;

@@ -187,7 +187,7 @@ fn a_request_for_which_no_thread_can_be_started_is_answered() {
     join(&shared);
 }
 
-/// The text of an interrupted calibration tells the client to calibrate the finger again. That does not help if the
+/// The text of an interrupted calibration asks the client to calibrate the finger again. That does not help if the
 /// server has ended, so the Answer has the code [`Code::Closed`].
 #[test]
 fn a_calibration_that_the_end_of_the_server_interrupts_is_answered_with_closed() {

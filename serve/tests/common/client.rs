@@ -18,7 +18,7 @@ pub struct Certificate<'a> {
 }
 
 #[derive(Default)]
-struct Heard {
+struct Received {
     seen: u64,
     states: Vec<State>,
     refusals: Vec<Answer>,
@@ -32,7 +32,7 @@ pub struct Client {
     pub name: ClientName,
     pub epoch: u64,
     pub sequence: u64,
-    heard: Arc<Mutex<Heard>>,
+    received: Arc<Mutex<Received>>,
 }
 
 /// A request for every finger.
@@ -79,52 +79,52 @@ impl Client {
         let session = zenoh::open(config).wait().map_err(|error| error.to_string())?;
         let keys = HandKeys::new(hand.parse().expect("a name"));
         let name: ClientName = name.parse().expect("a name");
-        let heard = Arc::<Mutex<Heard>>::default();
-        let of_states = heard.clone();
+        let received = Arc::<Mutex<Received>>::default();
+        let of_states = received.clone();
         let on_state = move |sample: zenoh::sample::Sample| {
             let state = State::decode(&sample.payload().to_bytes()).expect("a State");
-            let heard = &mut *of_states.lock().expect("heard");
-            heard.seen = heard.seen.max(state.time);
-            heard.states.push(state);
+            let received = &mut *of_states.lock().expect("received");
+            received.seen = received.seen.max(state.time);
+            received.states.push(state);
         };
         session.declare_subscriber(keys.state()).callback(on_state).background().wait().expect("subscribed");
-        let of_events = heard.clone();
+        let of_events = received.clone();
         let on_event = move |sample: zenoh::sample::Sample| {
             let event = Event::decode(&sample.payload().to_bytes()).expect("an Event");
-            of_events.lock().expect("heard").events.push(event);
+            of_events.lock().expect("received").events.push(event);
         };
         session.declare_subscriber(keys.events()).callback(on_event).background().wait().expect("subscribed");
-        let of_refusals = heard.clone();
+        let of_refusals = received.clone();
         let on_refusal = move |sample: zenoh::sample::Sample| {
             let answer = Answer::decode(&sample.payload().to_bytes()).expect("an Answer");
-            of_refusals.lock().expect("heard").refusals.push(answer);
+            of_refusals.lock().expect("received").refusals.push(answer);
         };
         session.declare_subscriber(keys.refused(&name)).callback(on_refusal).background().wait().expect("subscribed");
-        Ok(Self { session, keys, name, epoch: 0, sequence: 0, heard })
+        Ok(Self { session, keys, name, epoch: 0, sequence: 0, received })
     }
 
     /// The newest State.
     pub fn state(&self) -> Option<State> {
-        self.heard.lock().expect("heard").states.last().cloned()
+        self.received.lock().expect("received").states.last().cloned()
     }
 
     /// All States so far.
     pub fn states(&self) -> Vec<State> {
-        self.heard.lock().expect("heard").states.clone()
+        self.received.lock().expect("received").states.clone()
     }
 
     /// All Events so far.
     pub fn events(&self) -> Vec<Event> {
-        self.heard.lock().expect("heard").events.clone()
+        self.received.lock().expect("received").events.clone()
     }
 
     /// The newest refusal of a Target.
     pub fn refusal(&self) -> Option<Answer> {
-        self.heard.lock().expect("heard").refusals.last().cloned()
+        self.received.lock().expect("received").refusals.last().cloned()
     }
 
     pub fn seen(&self) -> u64 {
-        self.heard.lock().expect("heard").seen
+        self.received.lock().expect("received").seen
     }
 
     /// Sends a Request under this key. Returns none if there is no answer.
@@ -132,8 +132,8 @@ impl Client {
         let replies = self.session.get(key).payload(payload).timeout(PATIENCE).wait().expect("asked");
         let reply = replies.recv().ok()?;
         let answer = Answer::decode(&reply.result().ok()?.payload().to_bytes()).expect("an Answer");
-        let heard = &mut *self.heard.lock().expect("heard");
-        heard.seen = heard.seen.max(answer.time);
+        let received = &mut *self.received.lock().expect("received");
+        received.seen = received.seen.max(answer.time);
         Some(answer)
     }
 

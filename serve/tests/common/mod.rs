@@ -1,4 +1,4 @@
-//! A server with the simulated hand in this process, and clients that speak the protocol with zenoh and the codec
+//! A server with the simulated hand in this process, and clients that use the protocol with zenoh and the codec
 //! alone.
 
 #![allow(dead_code)]

@@ -31,14 +31,13 @@ pub enum Failure {
     /// Nothing arrives in any direction.
     Unplugged,
     /// What the planner sends does not arrive.
-    PlannerUnheard,
+    PlannerMuted,
     /// What the server sends does not arrive.
-    ServerUnheard,
+    ServerMuted,
 }
 
 impl Failure {
-    pub const ALL: [Self; 5] =
-        [Self::Killed, Self::Stopped, Self::Unplugged, Self::PlannerUnheard, Self::ServerUnheard];
+    pub const ALL: [Self; 5] = [Self::Killed, Self::Stopped, Self::Unplugged, Self::PlannerMuted, Self::ServerMuted];
 }
 
 /// What the hand did. `caught` and `ended` are times of the last finger, in ms.
@@ -101,8 +100,8 @@ impl Rig {
             Failure::Killed => planner.signal(libc::SIGKILL),
             Failure::Stopped => planner.signal(libc::SIGSTOP),
             Failure::Unplugged => _ = self.line.set_both(Conditions::CUT),
-            Failure::PlannerUnheard => _ = self.line.set(Direction::Left, Conditions::CUT),
-            Failure::ServerUnheard => _ = self.line.set(Direction::Right, Conditions::CUT),
+            Failure::PlannerMuted => _ = self.line.set(Direction::Left, Conditions::CUT),
+            Failure::ServerMuted => _ = self.line.set(Direction::Right, Conditions::CUT),
         }
         let outcome = self.outcome(begin);
         self.line.set_both(Conditions::default());

@@ -48,7 +48,7 @@ impl SlipDetector {
         }
     }
 
-    /// Runs one cycle. `settled` tells whether the joints have come to rest since the set point changed.
+    /// Runs one cycle. `settled` is true if the joints have come to rest since the set point changed.
     pub fn observe(
         &self,
         state: &mut SlipState,

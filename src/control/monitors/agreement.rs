@@ -216,8 +216,9 @@ mod tests {
         let agreement = Agreement::new(&finger, &finger.tendons().expect("the default tendons"));
         let errors = agreement.of_tension.map(|weight| finger.monitors.disagreement / weight);
         assert!((errors[0] - errors[3]).abs() + (errors[1] - errors[2]).abs() < 1e-6, "{errors}");
-        let told = format!("an error of {:.1} N at gauge 1 or 4, or of {:.1} N at gauge 2 or 3", errors[0], errors[1]);
+        let reported =
+            format!("an error of {:.1} N at gauge 1 or 4, or of {:.1} N at gauge 2 or 3", errors[0], errors[1]);
         let reference = include_str!("../../../docs/sun2xp.toml").replace("\n# ", " ");
-        assert!(reference.contains(&told), "{told}");
+        assert!(reference.contains(&reported), "{reported}");
     }
 }

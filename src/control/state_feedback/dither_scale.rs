@@ -46,7 +46,7 @@ impl DitherScale {
         Self { inverse_torques: torques.map(f64::recip), changing: (1.0 / (CHANGING * rate)).min(1.0) }
     }
 
-    /// Returns the factor on the amplitude. `k_theta` is the stiffness of the joints, N cm/rad. `touches` tells whether
+    /// Returns the factor on the amplitude. `k_theta` is the stiffness of the joints, N cm/rad. `touches` is true if
     /// the spring exerts so much torque that the finger probably touches something.
     pub fn advance(&self, state: &mut DitherScaleState, k_theta: &Matrix3<f64>, touches: bool) -> f64 {
         state.0 += (f64::from(touches) - state.0) * self.changing;

@@ -17,12 +17,12 @@ const LARGEST: f64 = 0.4;
 
 /// Tension below which a tendon is almost slack, as a fraction of t_min. The commanded amplitude then falls quickly.
 const LOW: f64 = 0.4;
-/// Envelope of a burst below which the command is adjusted again. A burst is the larger dither after a fast motion; see
-/// [`DitherBurst`].
+/// A burst, the large dither after a fast motion ([`DitherBurst`]), suspends the adjustment of the command until the
+/// envelope of the burst is below this value.
 const ENDED: f64 = 0.02;
 
-/// Factor on the amplitude of a burst if the configured pulley friction requires a larger dither. Without such
-/// friction, a larger burst would delay the end of a step.
+/// Factor on the amplitude of a burst if the pulley friction raises the wanted dither above
+/// [`Numbers::tension_dither`]. With less pulley friction, a larger burst would delay the end of a step.
 const RUBBING_BURST: f64 = 2.0;
 
 /// Factor per cycle of an amplitude that falls quickly.
@@ -68,7 +68,7 @@ pub(crate) struct TensionDither {
     /// Largest b, N. See [`Numbers::dither_rise`].
     risen: f64,
     burst: DitherBurst,
-    /// Set only for a finger whose configured pulley friction requires a larger dither.
+    /// Set only if the pulley friction raises the wanted dither above [`Numbers::tension_dither`].
     scaling: Option<DitherScale>,
     /// Largest b of a burst, N. The limit [`TensionDither::risen`] does not apply to it. If this b grew with the
     /// tensions, the dither of loaded fingers would make tendons slack at hard walls.

@@ -155,7 +155,7 @@ impl SlackTakeUp {
         self.tightens(slack) && slack.steady
     }
 
-    /// Runs one cycle. Returns the pulls, N. `weighs` tells whether gravity acts on the finger.
+    /// Runs one cycle. Returns the pulls, N. `weighs` is true if gravity acts on the finger.
     pub fn step(&self, slack: &mut Slack, now: &Slackness, weighs: bool) -> Vector4<f64> {
         slack.tensions += (now.tensions - slack.tensions) * (self.period / SMOOTHING).min(1.0);
         slack.smoothed += (now.tensions - slack.smoothed) * (self.period / MORE_SMOOTHING).min(1.0);

@@ -145,7 +145,7 @@ impl FingerServo {
                 motion.path = Following {
                     number: taken.number,
                     follower: Some(Follower::new(taken.begin.unwrap_or(held.stiffness))),
-                    // Only the set point of a later path tells whether that path changes the stiffness. When that set
+                    // Only the set point of a later path shows whether that path changes the stiffness. When that set
                     // point arrives, it can switch the change off but not on, so the change is on at first.
                     stiffness: path.stiffness || taken.number != path.number,
                     begins: true,

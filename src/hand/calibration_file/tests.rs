@@ -225,8 +225,8 @@ fn a_file_that_no_longer_fits_is_unchanged_and_the_reason_is_reported() {
         [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "for its pretension")]
     {
         match try_to_store(text, &[zeros(FingerNumber::ONE, [5; 4], 0.0)]).expect_err("unusable") {
-            ConfigurationError::Invalid { line: found, reason: told, .. } => {
-                assert!(found == line && told.contains(reason), "{found:?} {told}");
+            ConfigurationError::Invalid { line: found, reason: reported, .. } => {
+                assert!(found == line && reported.contains(reason), "{found:?} {reported}");
             }
             other => panic!("{other}"),
         }

@@ -10,7 +10,7 @@ pub enum Trouble {
     /// A defect of the finger with this number.
     Finger(u8, Defect),
     /// The end of all defects of the finger with this number.
-    Mend(u8),
+    Repair(u8),
     /// A fault of frames from the board, with this probability and duration, ns.
     Line(LineFault, f64, u64),
     /// A fault of frames to the board, with this probability and duration, ns.
@@ -73,9 +73,9 @@ impl Trouble {
                         .into());
                 }
             },
-            "mend" => match numbers()?[..] {
-                [finger] => Trouble::Mend(whole(finger)?),
-                _ => return Err("usage: mend FINGER".into()),
+            "repair" => match numbers()?[..] {
+                [finger] => Trouble::Repair(whole(finger)?),
+                _ => return Err("usage: repair FINGER".into()),
             },
             _ => return Self::read_defect(name, rest),
         };
@@ -142,7 +142,7 @@ impl Trouble {
         };
         match *self {
             Trouble::Finger(number, defect) => finger(number, &|finger| finger.inject(&defect)),
-            Trouble::Mend(number) => finger(number, &|finger| {
+            Trouble::Repair(number) => finger(number, &|finger| {
                 finger.repair();
                 true
             }),
@@ -254,7 +254,7 @@ mod tests {
             ("reverse-motor 1 3", Trouble::Finger(1, Defect::Reversed(WiredPart::Motor, 3))),
             ("gauge-gain 2 1 0.8", Trouble::Finger(2, Defect::GaugeGain { gauge: 1, ratio: 0.8 })),
             ("reset 3", Trouble::Finger(3, Defect::Reset)),
-            ("mend 3", Trouble::Mend(3)),
+            ("repair 3", Trouble::Repair(3)),
             ("drop 0.05", Trouble::Line(LineFault::Drop, 0.05, FOREVER)),
             ("corrupt 1 20", Trouble::Line(LineFault::Corrupt, 1.0, 20_000_000)),
             ("delay 0.5 3 100", Trouble::Line(LineFault::Delay(3_000_000), 0.5, 100_000_000)),
@@ -281,7 +281,7 @@ mod tests {
             ("drop", "PROBABILITY [MS]"),
             ("stall -1", "not a time"),
             ("commands corrupt 2", "not a probability"),
-            ("commands mend 1", "FAULT is drop, corrupt"),
+            ("commands repair 1", "FAULT is drop, corrupt"),
             ("commands", "FAULT is drop, corrupt"),
             ("slack 1 2 -3", "does not take these numbers"),
         ] {

@@ -55,7 +55,7 @@ const DEFECTS: [Entry; 24] = [
     ("supply FINGER", "let the motor supply fail"),
     ("sensor FINGER", "let a sensor fail"),
     ("reset FINGER", "interrupt the board's power for a moment"),
-    ("mend FINGER", "repair all of the above"),
+    ("repair FINGER", "repair all of the above"),
 ];
 
 const LINE_FAULTS: [Entry; 10] = [
@@ -93,7 +93,7 @@ pub fn help() -> String {
         table.text(&screen).lines().map(|line| format!("{:INDENT$}{line}\n", "")).collect()
     };
     format!(
-        "Orders:\n{}\nDefects, each of which lasts until `mend` (`reset` only for a moment). Tendons, motors, gauges \
+        "Orders:\n{}\nDefects, each of which lasts until `repair` (`reset` only for a moment). Tendons, motors, gauges \
          and encoders are numbered 1 to 4:\n{}\nLine faults, each of which lasts until `good` (`unplug` until \
          `replug`), or for MS milliseconds if MS is given. PROBABILITY applies to each frame from the board, or with \
          `commands` to each frame to the board:\n{}\nPositions and forces are in the finger's frame, lengths in \

@@ -41,7 +41,7 @@ impl Chosen {
 }
 
 /// A finger of a board: the unique number and the address. A board may report the same unique number for all of its
-/// fingers, although the protocol demands different ones. Then only the address tells them apart.
+/// fingers, although the protocol demands different ones. Then only the address distinguishes them.
 pub type Taken = (BoardNumber, u8);
 
 /// Searches these ports for the board of a finger. `taken` lists the boards and addresses of the other fingers of the

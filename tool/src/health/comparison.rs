@@ -16,7 +16,7 @@ const GAIN: f64 = 0.05;
 const TENSION: f64 = 0.25;
 /// The noise of a gauge may rise by this factor and in addition by this value, N rms.
 const NOISE: (f64, f64) = (2.0, 0.05);
-/// Largest rise of the heat of a motor at rest, relative to the heat that it bears continuously.
+/// Largest rise of the heat of a motor at rest, relative to the heat that it withstands continuously.
 const HEAT: f64 = 0.25;
 /// Friction may rise by the factor `FRICTION.0` and in addition by a value. This value is `FRICTION.1`, N cm, for
 /// motors and joints, and `FRICTION.2` for conduits and pulleys.

@@ -60,7 +60,7 @@ pub fn press(view: &mut View, worker: &Worker, configuration: &Configuration, ke
     Pressed::Handled
 }
 
-/// Returns the command of a key; none if the key has no command. The panel is told by [`JogPanel::note`] whether the
+/// Returns the command of a key; none if the key has no command. [`JogPanel::note`] informs the panel whether the
 /// command was sent.
 pub fn command(panel: &mut JogPanel, configuration: &Configuration, code: KeyCode) -> Option<Command> {
     let finger = panel.finger;

@@ -1,4 +1,4 @@
-//! Colours that people with any kind of colour vision can tell apart (M. Okabe and K. Ito, 2008), and a dark purple.
+//! Colours that people with any kind of colour vision can distinguish (M. Okabe and K. Ito, 2008), and a dark purple.
 //! Most curves also differ in their dashes or their labels.
 
 /// A colour as SVG writes it.

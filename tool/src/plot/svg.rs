@@ -119,7 +119,8 @@ impl Svg {
         self.add(format_args!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"{fill}\"/>"));
     }
 
-    /// A text on a base line through a point. `font.anchor` tells whether the text begins, ends or is centred there.
+    /// A text on a base line through a point. `font.anchor` determines whether the text begins, ends or is centred
+    /// there.
     pub fn text(&mut self, [x, y]: [f64; 2], text: &str, font: Font) {
         self.turned_text([x, y], text, font, None);
     }

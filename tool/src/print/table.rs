@@ -73,7 +73,7 @@ impl Table {
         let mut table = comfy_table::Table::new();
         let rule = LineStyle::none().fill('─').junction('─');
         table.load_style(if screen.lines { NOTHING.header_separator(rule) } else { NOTHING });
-        // The table must not examine the output itself: `screen` tells what the output can show, so that tests can
+        // The table must not examine the output itself: `screen` describes what the output can show, so that tests can
         // choose the screen.
         table.force_no_tty();
         if screen.coloured {

@@ -115,7 +115,7 @@ fn a_recording_in_another_version_of_the_format_is_refused_with_the_library_to_u
     assert!(refusal.contains("has format version 0,") && refusal.ends_with(remedy), "{refusal}");
 }
 
-/// The usual error tells the author of a configuration file what to write. A person who opens a recording is not this
+/// The usual error says what the author of a configuration file must write. A person who opens a recording is not this
 /// author, so the error says that the file was altered.
 #[test]
 fn altered_configurations_are_refused_without_the_remedy_for_their_authors() {

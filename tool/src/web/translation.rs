@@ -226,7 +226,7 @@ fn state(sample: &Sample) -> StateMessage {
     }
 }
 
-/// Returns whether the page must get a new state. `due` tells whether the last state is so old that a changed stiffness
+/// Returns whether the page must get a new state. `due` is true if the last state is so old that a changed stiffness
 /// may be sent.
 fn differs(last: &StateMessage, now: &StateMessage, due: bool) -> bool {
     let without = |state: &StateMessage| StateMessage { stiffness: None, ..state.clone() };

@@ -37,16 +37,16 @@ fn one_bit_of_feedback_is_found_where_it_was_changed() {
     let mut altered = recording.clone();
     altered.cycles[place].feedback.as_mut().expect("a reply").gauge_counts[3] ^= 1;
     altered.save(&file).expect("written");
-    let (status, told) = replayed(&file);
-    assert_eq!(status, Some(1), "{told}");
-    assert!(told.contains(&format!("cycle {}, line {}", recording.cycles[place].cycle, place + 2)), "{told}");
-    let (status, told) = replayed_with(&file, &["--json"]);
-    let told: Value = serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}"));
-    let finger = &told["fingers"][0];
-    assert_eq!((status, &told["pass"], &finger["finger"]), (Some(1), &json!(false), &json!(2)));
+    let (status, reported) = replayed(&file);
+    assert_eq!(status, Some(1), "{reported}");
+    assert!(reported.contains(&format!("cycle {}, line {}", recording.cycles[place].cycle, place + 2)), "{reported}");
+    let (status, reported) = replayed_with(&file, &["--json"]);
+    let reported: Value = serde_json::from_str(&reported).unwrap_or_else(|error| panic!("{error}: {reported}"));
+    let finger = &reported["fingers"][0];
+    assert_eq!((status, &reported["pass"], &finger["finger"]), (Some(1), &json!(false), &json!(2)));
     let first = &finger["first_difference"];
     assert_eq!((&first["cycle"], &first["line"]), (&json!(recording.cycles[place].cycle), &json!(place + 2)));
-    assert!(finger["different"].as_u64().is_some_and(|different| different > 0), "{told:#}");
+    assert!(finger["different"].as_u64().is_some_and(|different| different > 0), "{reported:#}");
     assert_eq!(finger["replayed"], json!(recording.cycles.iter().filter(|one| one.control.is_some()).count()));
 }
 
@@ -79,8 +79,8 @@ fn a_file_comes_back_as_it_was_and_a_damaged_one_is_refused_with_its_reason() {
     assert!(matches!(refusal(&newer), RecordingError::Version { found: 2, .. }));
     assert!(matches!(refusal("{}\n"), RecordingError::Foreign(..)));
     assert!(matches!(refusal(""), RecordingError::Foreign(..)));
-    let (status, told) = replayed(&file);
-    assert!(status == Some(1) && told.contains("not a black box"), "{told}");
+    let (status, reported) = replayed(&file);
+    assert!(status == Some(1) && reported.contains("not a black box"), "{reported}");
     assert_eq!(replayed(&folder.path().join("none")).0, Some(1));
 
     let refused = hand.write_black_box(2, &folder.path().join("none/file")).expect_err("no such folder");

@@ -47,10 +47,10 @@ fn an_eventful_run_that_ends_in_a_fault_is_written_and_replayed() {
             "never faded"
         );
 
-        let (status, told) = replayed(file);
-        assert_eq!(status, Some(0), "{told}");
-        assert!(told.contains("every motor command the same to the last bit"), "{told}");
-        assert!(told.contains("emergency stop") || told.contains("status"), "{told}");
+        let (status, reported) = replayed(file);
+        assert_eq!(status, Some(0), "{reported}");
+        assert!(reported.contains("every motor command the same to the last bit"), "{reported}");
+        assert!(reported.contains("emergency stop") || reported.contains("status"), "{reported}");
         fs::remove_file(file).expect("removed");
     }
 }

@@ -18,11 +18,11 @@ fn refusal_of(text: &[u8]) -> String {
     let file = folder.path().join("altered.jsonl");
     fs::write(&file, text).expect("written");
     let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(&file).output().expect("the tool runs");
-    let told = String::from_utf8(run.stderr).expect("text");
-    assert_eq!(run.status.code(), Some(1), "{told}");
-    assert!(told.lines().count() == 1 && told.len() < 600, "one short line: {told}");
-    assert!(told.contains("altered.jsonl"), "{told}");
-    told
+    let reported = String::from_utf8(run.stderr).expect("text");
+    assert_eq!(run.status.code(), Some(1), "{reported}");
+    assert!(reported.lines().count() == 1 && reported.len() < 600, "one short line: {reported}");
+    assert!(reported.contains("altered.jsonl"), "{reported}");
+    reported
 }
 
 fn altered(alter: impl FnOnce(&mut Recording)) -> Recording {
@@ -38,12 +38,12 @@ fn skipped_periods_without_end_are_refused() {
             recording.cycles[index].control.as_mut().expect("computed").input.skipped = skipped;
         }
     };
-    let told = refusal(&altered(skipped(7, 1_000_000_000_000)));
-    assert!(told.contains(", line 9: control.input.skipped: is 1000000000000:"), "{told}");
+    let reported = refusal(&altered(skipped(7, 1_000_000_000_000)));
+    assert!(reported.contains(", line 9: control.input.skipped: is 1000000000000:"), "{reported}");
     // The number of skipped periods is limited by the watchdog.
     assert!(altered(skipped(7, 12)).replay().is_ok());
-    let told = refusal(&altered(skipped(7, 13)));
-    assert!(told.contains("with the hand.watchdog_ms of this file it is at most 12"), "{told}");
+    let reported = refusal(&altered(skipped(7, 13)));
+    assert!(reported.contains("with the hand.watchdog_ms of this file it is at most 12"), "{reported}");
     // The total of skipped periods is limited too.
     let slow = altered(|recording| {
         recording.origin.hand.watchdog_ms = 1000;
@@ -55,8 +55,8 @@ fn skipped_periods_without_end_are_refused() {
             cycle
         }));
     });
-    let told = refusal(&slow);
-    assert!(told.contains("together are more than 1000000"), "{told}");
+    let reported = refusal(&slow);
+    assert!(reported.contains("together are more than 1000000"), "{reported}");
 }
 
 #[test]
@@ -84,30 +84,30 @@ fn invalid_configurations_make_no_controller() {
         ),
     ];
     for (alter, key) in alterations {
-        let told = refusal(&altered(alter));
-        assert!(told.contains("line 1: ") && told.contains(key), "{told}");
+        let reported = refusal(&altered(alter));
+        assert!(reported.contains("line 1: ") && reported.contains(key), "{reported}");
         // The remedies for a configuration are no remedies for an altered file.
-        assert!(!["aise ", "heck ", "Correct "].iter().any(|remedy| told.contains(remedy)), "{told}");
+        assert!(!["aise ", "heck ", "Correct "].iter().any(|remedy| reported.contains(remedy)), "{reported}");
     }
 }
 
 #[test]
 fn a_fade_with_impossible_numbers_is_refused() {
     for (left, rest) in [(0.4, -1.0), (0.4, 1.1), (-0.1, 0.5), (1.1, 0.5)] {
-        let told = refusal(&altered(|recording| {
+        let reported = refusal(&altered(|recording| {
             recording.cycles[8].control.as_mut().expect("computed").input.fading = Some(Fading { left, rest });
         }));
-        assert!(told.contains(", line 10: control.input.fading: "), "{told}");
+        assert!(reported.contains(", line 10: control.input.fading: "), "{reported}");
     }
 }
 
 #[test]
 fn a_gravity_that_no_hand_has_is_refused() {
-    let told = refusal(&altered(|recording| {
+    let reported = refusal(&altered(|recording| {
         let input = &mut recording.cycles[8].control.as_mut().expect("computed").input;
         input.gravity = Some([0.0, 0.0, 1e3].into());
     }));
-    assert!(told.contains(", line 10: control.input.gravity: is "), "{told}");
+    assert!(reported.contains(", line 10: control.input.gravity: is "), "{reported}");
 }
 
 #[test]
@@ -132,8 +132,8 @@ fn files_that_no_black_box_writes_are_refused() {
     let crowded = text.replacen("\"controllers\":[", &format!("\"controllers\":[{controller}"), 1);
     assert!(refusal_of(crowded.as_bytes()).contains("line 1: more than 4096 controllers"));
     let rude = text.replacen("\"exact\"", &format!("\"{}\\u001b[31m\\n\"", "x".repeat(1000)), 1);
-    let told = refusal_of(rude.as_bytes());
-    assert!(told.contains("line 1: unknown variant `xxx"), "{told}");
+    let reported = refusal_of(rude.as_bytes());
+    assert!(reported.contains("line 1: unknown variant `xxx"), "{reported}");
     let library = text.replacen("\"library\":\"", "\"library\":\"\\n\\n", 1).replacen("\"rate\"", "\"rat\"", 1);
     assert!(refusal_of(library.as_bytes()).contains("Library \\n\\n0.1.0 wrote it"));
 }

@@ -40,8 +40,8 @@ fn a_full_disk_leaves_the_old_file() {
         .env(FILE, &file)
         .output()
         .expect("run");
-    let told = String::from_utf8_lossy(&run.stdout);
-    assert!(run.status.success() && told.contains("1 passed"), "{told}");
+    let reported = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success() && reported.contains("1 passed"), "{reported}");
     assert!(fs::read(&file).expect("read") == before, "the old file has changed");
     assert_eq!(names(folder.path()), ["finger-1.jsonl"]);
 }

@@ -38,8 +38,8 @@ fn every_number_of_a_csv_file_has_the_recorded_bits() {
     let recorded = recorded();
     let folder = tempfile::tempdir().expect("a folder");
     let output = folder.path().to_str().expect("a name");
-    let told = done(folder.path(), &["export", recorded.file().to_str().expect("a name"), "--output", output]);
-    assert_eq!(told.lines().count(), 2, "{told}");
+    let reported = done(folder.path(), &["export", recorded.file().to_str().expect("a name"), "--output", output]);
+    assert_eq!(reported.lines().count(), 2, "{reported}");
     let text = fs::read_to_string(folder.path().join("finger-2-finger2.csv")).expect("a file");
     let (header, rows) = table(&text);
     assert!(
@@ -162,8 +162,8 @@ fn a_full_disk_is_named_with_the_folder() {
     let mut shell = Command::new("sh");
     shell.args(["-c", script, env!("CARGO_BIN_EXE_sun2xp")]).arg(recorded.file()).current_dir(folder.path());
     let run = shell.output().expect("the shell runs");
-    let told = String::from_utf8_lossy(&run.stderr);
-    assert!(run.status.code() == Some(1) && told.contains("cannot write into csv: "), "{told}");
+    let reported = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.code() == Some(1) && reported.contains("cannot write into csv: "), "{reported}");
     assert_eq!(fs::read_dir(folder.path().join("csv")).expect("there").count(), 0);
 }
 

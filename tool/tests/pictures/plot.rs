@@ -25,8 +25,8 @@ fn folder() -> (Option<tempfile::TempDir>, PathBuf) {
 fn plot(folder: &Path, kind: &str, name: &str, options: &[&str]) -> Vec<u8> {
     let file = recorded().file();
     let file = file.to_str().expect("a name");
-    let told = done(folder, &[&["plot", file, "--kind", kind, "--output", name], options].concat());
-    assert_eq!(told.trim(), name);
+    let reported = done(folder, &[&["plot", file, "--kind", kind, "--output", name], options].concat());
+    assert_eq!(reported.trim(), name);
     fs::read(folder.join(name)).expect("a picture")
 }
 

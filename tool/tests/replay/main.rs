@@ -21,8 +21,8 @@ use sun2xp::telemetry::Message;
 /// Replays messages through the tool. Returns the exit status and the JSON.
 fn replay(recording: &Recorded, messages: &[Message]) -> (Option<i32>, Value) {
     let file = recording.write(messages);
-    let (status, told) = replayed_with(file.path(), &["--json"]);
-    (status, serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}")))
+    let (status, reported) = replayed_with(file.path(), &["--json"]);
+    (status, serde_json::from_str(&reported).unwrap_or_else(|error| panic!("{error}: {reported}")))
 }
 
 fn number_of_cycle(message: &Message, finger: FingerNumber) -> Option<u64> {
@@ -39,9 +39,9 @@ fn number(value: &Value) -> u64 {
 #[test]
 fn a_run_with_changes_a_fault_and_a_recovery_is_the_same_to_the_last_bit() {
     let recording = recorded();
-    let (status, told) = replay(recording, &recording.messages);
-    assert_eq!((status, &told["pass"]), (Some(0), &Value::Bool(true)), "{told:#}");
-    let fingers = told["fingers"].as_array().expect("fingers");
+    let (status, reported) = replay(recording, &recording.messages);
+    assert_eq!((status, &reported["pass"]), (Some(0), &Value::Bool(true)), "{reported:#}");
+    let fingers = reported["fingers"].as_array().expect("fingers");
     assert_eq!(fingers.len(), 3);
     for (finger, number_of) in fingers.iter().zip(FingerNumber::ALL) {
         let recorded =
@@ -63,12 +63,12 @@ fn a_run_with_changes_a_fault_and_a_recovery_is_the_same_to_the_last_bit() {
 fn the_text_names_every_finger() {
     let recording = recorded();
     let file = recording.write(&recording.messages);
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert_eq!(status, Some(0), "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert_eq!(status, Some(0), "{reported}");
     for finger in FingerNumber::ALL {
-        assert!(told.contains(&format!("  {finger}, at 500 Hz")), "{told}");
+        assert!(reported.contains(&format!("  {finger}, at 500 Hz")), "{reported}");
     }
-    assert_eq!(told.matches("every motor command the same to the last bit").count(), 3, "{told}");
+    assert_eq!(reported.matches("every motor command the same to the last bit").count(), 3, "{reported}");
 }
 
 #[test]
@@ -85,9 +85,9 @@ fn one_altered_bit_is_found_in_its_cycle() {
         }
         _ => None,
     });
-    let (status, told) = replay(recording, &messages);
-    assert_eq!((status, &told["pass"]), (Some(1), &Value::Bool(false)), "{told:#}");
-    let [one, two, three] = [0, 1, 2].map(|finger| &told["fingers"][finger]);
+    let (status, reported) = replay(recording, &messages);
+    assert_eq!((status, &reported["pass"]), (Some(1), &Value::Bool(false)), "{reported:#}");
+    let [one, two, three] = [0, 1, 2].map(|finger| &reported["fingers"][finger]);
     assert_eq!(Some(number(&three["first_difference"]["cycle"])), altered, "{three:#}");
     // The next recorded state ends the difference.
     assert!((1..=65).contains(&number(&three["different"])), "{three:#}");
@@ -96,9 +96,9 @@ fn one_altered_bit_is_found_in_its_cycle() {
     }
 
     let file = recording.write(&messages);
-    let (status, told) = replayed_with(file.path(), &[]);
+    let (status, reported) = replayed_with(file.path(), &[]);
     let cycle = altered.expect("a cycle");
-    assert!(status == Some(1) && told.contains(&format!("  cycle {cycle}\n")), "{told}");
+    assert!(status == Some(1) && reported.contains(&format!("  cycle {cycle}\n")), "{reported}");
 }
 
 #[test]
@@ -112,9 +112,9 @@ fn a_gap_is_reported_and_the_replay_continues_after_it() {
         .filter(|message| !number_of_cycle(message, FingerNumber::ONE).is_some_and(|cycle| lost.contains(&cycle)))
         .cloned()
         .collect();
-    let (status, told) = replay(recording, &rest);
-    assert_eq!(status, Some(0), "{told:#}");
-    let finger = &told["fingers"][0];
+    let (status, reported) = replay(recording, &rest);
+    assert_eq!(status, Some(0), "{reported:#}");
+    let finger = &reported["fingers"][0];
     assert_eq!((number(&finger["gaps"]), number(&finger["missing_cycles"])), (1, 20));
     assert_eq!(number(&finger["first_gaps"][0]["first"]), begin);
     assert!(number(&finger["replayed"]) > 600 && number(&finger["without_state"]) < 200, "{finger:#}");
@@ -139,22 +139,22 @@ fn a_lost_controller_leaves_out_its_cycles_only() {
             if *finger == FingerNumber::TWO && source.number == lost)
     };
     let rest: Vec<Message> = recording.messages.iter().filter(|message| !is_lost(message)).cloned().collect();
-    let (status, told) = replay(recording, &rest);
-    assert_eq!(status, Some(0), "{told:#}");
-    let [one, two, three] = [0, 1, 2].map(|finger| &told["fingers"][finger]);
+    let (status, reported) = replay(recording, &rest);
+    assert_eq!(status, Some(0), "{reported:#}");
+    let [one, two, three] = [0, 1, 2].map(|finger| &reported["fingers"][finger]);
     assert!(number(&two["without_controller"]) > 0 && number(&two["replayed"]) > 0, "{two:#}");
     assert_eq!(number(&two["first_without_controller"]["controller"]), u64::from(lost));
     for whole in [one, three] {
         assert_eq!(number(&whole["without_controller"]), 0, "{whole:#}");
         assert!(number(&whole["replayed"]) > 800, "{whole:#}");
     }
-    let (_, told) = replayed_with(recording.write(&rest).path(), &[]);
-    assert!(told.contains(&format!("does not describe controller {lost}: ")), "{told}");
+    let (_, reported) = replayed_with(recording.write(&rest).path(), &[]);
+    assert!(reported.contains(&format!("does not describe controller {lost}: ")), "{reported}");
 
     let rest = recording.messages.iter().filter(|message| !matches!(message, Message::Controller { .. }));
     let file = recording.write(&rest.cloned().collect::<Vec<_>>());
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("does not describe the controllers of its cycles"), "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && reported.contains("does not describe the controllers of its cycles"), "{reported}");
 }
 
 #[test]
@@ -162,8 +162,8 @@ fn a_recording_without_states_is_refused() {
     let recording = recorded();
     let rest = recording.messages.iter().filter(|message| !matches!(message, Message::Keyframe { .. }));
     let file = recording.write(&rest.cloned().collect::<Vec<_>>());
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("no recorded state before any of its cycles"), "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && reported.contains("no recorded state before any of its cycles"), "{reported}");
 }
 
 /// Nothing was compared, so nothing may count as equal.
@@ -177,8 +177,8 @@ fn a_recording_in_which_no_controller_runs_is_refused() {
         _ => None,
     });
     let file = recording.write(&cycles.collect::<Vec<_>>());
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("no cycles in which a controller has run"), "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && reported.contains("no cycles in which a controller has run"), "{reported}");
 }
 
 #[test]
@@ -188,19 +188,22 @@ fn a_recording_without_an_end_is_replayed_and_a_damaged_one_is_refused() {
     let whole = std::fs::read(file.path()).expect("read");
     let part = &whole[..whole.len() * 2 / 3];
     std::fs::write(file.path(), part).expect("written");
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(0) && told.contains("has no end"), "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert!(status == Some(0) && reported.contains("has no end"), "{reported}");
 
     // The checksum of the chunk detects one altered bit, and the message names the last good cycle.
     std::fs::write(file.path(), damaged(&whole)).expect("written");
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.lines().count() == 1, "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && reported.lines().count() == 1, "{reported}");
     for part in ["The file was altered or damaged", "copy it again", "The last cycle that was read is cycle "] {
-        assert!(told.contains(part), "{told}");
+        assert!(reported.contains(part), "{reported}");
     }
-    let (status, told) = replayed_with(recording.write(&[]).path(), &[]);
-    assert!(status == Some(1) && told.contains("no cycles"), "{told}");
+    let (status, reported) = replayed_with(recording.write(&[]).path(), &[]);
+    assert!(status == Some(1) && reported.contains("no cycles"), "{reported}");
     std::fs::write(file.path(), &whole[..8]).expect("written");
-    let (status, told) = replayed_with(file.path(), &[]);
-    assert!(status == Some(1) && told.contains("is not a recording") && told.contains("copy it again"), "{told}");
+    let (status, reported) = replayed_with(file.path(), &[]);
+    assert!(
+        status == Some(1) && reported.contains("is not a recording") && reported.contains("copy it again"),
+        "{reported}"
+    );
 }

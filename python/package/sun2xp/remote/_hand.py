@@ -269,7 +269,7 @@ class RemoteHand(Reading):
         state = self._receiver.state(data)
         if state is not None:
             with self._network.sender.lock:
-                self._owner.heard(state)
+                self._owner.received(state)
             self._receiver.notify()
 
     def _take_refusal(self, data: bytes) -> None:

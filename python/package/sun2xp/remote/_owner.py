@@ -64,12 +64,13 @@ class Owner:
         self._epoch = 0
 
     def _notice_silence(self) -> None:
-        """Ends the epoch if this client has heard nothing of the server for so long that the server regards all Targets
-        of this client as too old. A Target contains the newest time of the server that this client has received."""
+        """Ends the epoch if this client has received nothing from the server for so long that the server regards all
+        Targets of this client as too old. A Target contains the newest time of the server that this client has
+        received."""
         if self._receiver.silence() > self._end:
             self._epoch = 0
 
-    def heard(self, state: State) -> None:
+    def received(self, state: State) -> None:
         """Processes what a State has shown: the number of the owner's epoch, and the records of this epoch."""
         if self._receiver.restarts != self._restarts:
             self._epoch = 0
@@ -83,7 +84,7 @@ class Owner:
             finger, bits = int(record["finger"]), int(record["bits"])
             self._bits[finger] = bits
             if finger in self._slots:
-                self._slots[finger].heard(int(record["command"]), bits)
+                self._slots[finger].received(int(record["command"]), bits)
 
     def refused(self, answer: Answer) -> None:
         """Processes the refusal of a Target: drops those of its set points that no State has confirmed."""

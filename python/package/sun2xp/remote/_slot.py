@@ -73,7 +73,7 @@ class Slot:
             _fill(self.part, earlier.change)
         self._open.append(_Command(change, self.part, sequence))
 
-    def heard(self, command: int, bits: int) -> None:
+    def received(self, command: int, bits: int) -> None:
         """Processes a record of this epoch. The commands up to its command number are confirmed."""
         self._bits = bits
         numbers = [sent.part.command for sent in self._open]

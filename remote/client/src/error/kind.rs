@@ -22,7 +22,7 @@ pub enum RemoteErrorKind {
     Faulted,
     /// The finger is busy.
     Busy,
-    /// There is no connection to the hand, or nothing was heard of it for too long.
+    /// There is no connection to the hand, or nothing was received from it for too long.
     NotConnected,
     /// What is known of the finger is too old.
     Stale,
@@ -34,7 +34,7 @@ pub enum RemoteErrorKind {
     Refused,
     /// The server is shutting down, or cannot make an epoch.
     Closed,
-    /// The server does not speak this version of the protocol.
+    /// The server does not support this version of the protocol.
     Protocol,
     /// The configuration cannot be used.
     Configuration,

@@ -63,7 +63,7 @@ impl RemoteHand {
     /// The newest Status. The server sends one each second.
     ///
     /// # Errors
-    /// Returns an error if nothing was heard of the hand for 3 s.
+    /// Returns an error if nothing was received from the hand for 3 s.
     pub fn status(&self) -> Result<Status, RemoteError> {
         self.link.shared.lock().status(now()).cloned()
     }
@@ -71,7 +71,7 @@ impl RemoteHand {
     /// The status of finger 1, 2 or 3 in the newest Status.
     ///
     /// # Errors
-    /// Returns an error if there is no such finger, or if nothing was heard of the hand for 3 s.
+    /// Returns an error if there is no such finger, or if nothing was received from the hand for 3 s.
     pub fn finger_status(&self, finger: i32) -> Result<FingerStatus, RemoteError> {
         let exchange = self.link.shared.lock();
         exchange.status(now())?;

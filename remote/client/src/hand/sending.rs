@@ -11,8 +11,8 @@ impl RemoteHand {
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the
-    /// hand cannot be commanded: this client does not own it, the finger has stopped, nothing was heard of the hand for
-    /// `stale_ms`, or the hand has refused an earlier set point. Such a refusal is reported only once.
+    /// hand cannot be commanded: this client does not own it, the finger has stopped, nothing was received from the
+    /// hand for `stale_ms`, or the hand has refused an earlier set point. Such a refusal is reported only once.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), RemoteError> {
         self.send_group(&[FingerCommand::new(finger).joints(joints)])
     }

@@ -77,7 +77,7 @@ fn an_owner_that_commands_nothing_says_that_it_lives() {
     assert_eq!((target.epoch, target.sequence, target.validity_ms, target.seen), (77, 1, 100, 1000 * MS));
     assert!(target.parts.is_empty());
     assert_eq!(outbox.next(19 * MS), None);
-    outbox.heard(1010 * MS, 5, true);
+    outbox.received(1010 * MS, 5, true);
     let target = outbox.next(20 * MS).expect("a Target after 20 ms");
     assert_eq!((target.sequence, target.sent, target.seen), (2, 20 * MS, 1010 * MS));
     assert_eq!(outbox.due(), Some(40 * MS));
@@ -252,14 +252,14 @@ fn a_refusal_does_not_concern_later_or_confirmed_values() {
 #[test]
 fn the_owner_notices_that_it_has_lost_the_hand() {
     let mut outbox = owner();
-    outbox.heard(1000 * MS, 4, true);
+    outbox.received(1000 * MS, 4, true);
     assert!(outbox.ownership().is_ok(), "that State was not later than the Answer");
-    outbox.heard(1001 * MS, 5, true);
+    outbox.received(1001 * MS, 5, true);
     assert!(outbox.ownership().is_ok());
-    outbox.heard(1002 * MS, 6, true);
+    outbox.received(1002 * MS, 6, true);
     assert_eq!(outbox.ownership(), Err(Loss::TakenOver));
     let mut outbox = owner();
-    outbox.heard(1002 * MS, 0, true);
+    outbox.received(1002 * MS, 0, true);
     assert_eq!(outbox.ownership(), Err(Loss::Ended));
 }
 

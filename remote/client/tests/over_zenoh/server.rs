@@ -1,4 +1,4 @@
-//! A small server that speaks the protocol over Zenoh on loopback, with fingers that reach every commanded position at
+//! A small server of the protocol over Zenoh on loopback, with fingers that reach every commanded position at
 //! once.
 
 #[path = "../../../../tests/common/free_port.rs"]

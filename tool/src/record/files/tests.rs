@@ -78,7 +78,7 @@ fn a_file_that_cannot_be_deleted_at_first_is_deleted_later() {
     fs::remove_file(&first).expect("removed");
     fs::create_dir(&first).expect("made");
     let undeleted: Vec<bool> = (0..3).map(|_| files.turn().expect("a file").undeleted.is_some()).collect();
-    assert_eq!(undeleted, [false, true, false], "told once");
+    assert_eq!(undeleted, [false, true, false], "reported once");
     assert_eq!(names(&folder), ["hand-3.mcap", "hand-4.mcap", "hand.mcap"], "the other files are deleted");
     fs::remove_dir(&first).expect("removed");
     fs::write(&first, "can be deleted now").expect("written");
