@@ -30,7 +30,7 @@ fn cycle(bencher: Bencher, scheme: Scheme, factor: f64) {
     let controller = Controller::new(&finger, 1000.0).expect("the default finger");
     let mut plant = Plant::new(&finger, Vector3::zeros()).expect("the default finger");
     let mut sensors = Sensors::new(&finger);
-    // The feedback of a finger in motion, so that no branch always goes the same way.
+    // The finger moves, so that the measured cycles take different branches of the controller.
     plant.release_brake();
     let feedback: [Feedback; 64] = std::array::from_fn(|_| {
         for _ in 0..10 {

@@ -141,7 +141,7 @@ pub mod touch {
     pub use crate::model::configuration::{ConfiguredTouch, MOST_ELEMENTS, TouchElement};
 }
 
-/// An object that all fingers of a simulated hand touch.
+/// An object that all fingers of a simulated hand can touch.
 pub mod object {
     pub use crate::model::configuration::{ConfiguredObject, ObjectShape};
     pub use crate::simulated::ObjectState;

@@ -41,7 +41,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases.max(2000)))]
 
     #[test]
-    fn whole_frames_in_any_pieces(contents in prop::collection::vec(content(), 1..5), chunk in 1usize..40) {
+    fn whole_frames_are_found_in_any_pieces(contents in prop::collection::vec(content(), 1..5), chunk in 1usize..40) {
         let stream: Vec<u8> = contents.iter().flat_map(|content| sealed(content)).collect();
         let mut decoder = Decoder::default();
         prop_assert_eq!(&decoded(&mut decoder, &stream, chunk), &contents);
@@ -110,7 +110,8 @@ proptest! {
             prop_assert_eq!((message.address, message.sequence, message.frame.kind()), (address, sequence, kind));
             let again = WireFrame::new(&message);
             prop_assert_eq!(again.as_bytes().len(), wire.len());
-            // The flags of a Command have reserved bits, which are dropped. All other frames must be restored.
+            // The flags of a Command have reserved bits, which are dropped. All other frames must be encoded to the
+            // same bytes again.
             if kind != Kind::Command {
                 prop_assert_eq!(again.as_bytes(), &wire[..]);
             }

@@ -131,7 +131,8 @@ fn exclusive(path: &Path) -> bool {
     exclusive != 0
 }
 
-/// The system refuses to open a port that is marked for exclusive use, except to root. Root is refused by the lock.
+/// The system lets only root open a port that is marked for exclusive use. The lock of the port makes `Port::open` fail
+/// for root too.
 #[test]
 fn a_refused_open_leaves_the_port_to_its_user() {
     let (control, path) = pseudo_terminal();

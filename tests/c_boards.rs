@@ -1,6 +1,6 @@
-//! Two boards in C: a second board, written from the protocol's page alone, and the reference firmware. If the library
-//! settles the fingers of the second board, the page contains everything that a board needs. Laboratories start from
-//! the reference firmware.
+//! Two boards in C: the second board (`tests/c/second_board`), which was written from docs/board-protocol.md alone, and
+//! the reference firmware, from which laboratories start. If the library settles the fingers of the second board,
+//! docs/board-protocol.md contains everything that a board needs.
 
 #[path = "common/attempts.rs"]
 mod attempts;

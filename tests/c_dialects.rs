@@ -39,7 +39,8 @@ fn the_header_alone_is_free_of_warnings_and_may_come_twice() {
     }
 }
 
-/// Checks the layout of the structs and the calls of `sun2xp.h`, and that the header may be included twice.
+/// Checks that `sun2xp.h` compiles without a warning, may be included twice, and gives its structs the same layout even
+/// after `#pragma pack`.
 #[test]
 fn the_header_with_handles_compiles_in_every_dialect_with_its_layout() {
     let bench = Bench::new();
@@ -128,8 +129,9 @@ fn own_declarations_compile_with_the_type_named() {
     }
 }
 
-/// Statements in C89 that must not compile: the argument is not an array of float or double, or its rows have another
-/// length. A C++ compiler reports each pair of template and type only once, so no pair occurs twice.
+/// Statements in C89 that must not compile: the argument is not an array of float or double, its rows do not have three
+/// elements, or GetPos would write to a const array. A C++ compiler reports each pair of template and type only once,
+/// so no pair occurs twice.
 const WRONG: &[&str] = &[
     "static int Wrong[3]; SendPos(1, Wrong);",
     "static void *Wrong; SendPos(1, Wrong);",

@@ -1,4 +1,5 @@
-//! The header in a planner that has macros of its own: it compiles whatever their names are, and leaves them unchanged.
+//! The headers compile in planners that have macros of their own. Sun2Xp.h compiles even if its names or keywords of C
+//! and C++ are macros, and these macros are still defined after it.
 
 #[allow(dead_code)]
 mod c;
@@ -62,7 +63,8 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(move |letter| !within(letter)).filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()))
 }
 
-/// Every name in a declaration of the header, or in the declaration at the head of an entry of its manual.
+/// The names in the declarations of the header, and in the declarations at the heads of the entries of its manual.
+/// Keywords, [`MACROS_OF_THE_HEADER`] and names that begin with SUN2XP are left out.
 fn names() -> BTreeSet<String> {
     let header = fs::read_to_string(root().join("include/Sun2Xp.h")).expect("the header");
     let mut names = BTreeSet::new();
@@ -103,8 +105,8 @@ fn every_word_of_c_may_be_a_macro() {
     may_be_macros(WORDS.iter().copied(), &[&[allowed], &[allowed, "-DSUN2XP_NO_GENERIC"]]);
 }
 
-/// Macros named like keywords of C that stay defined during the planner's calls. Planners use such macros to remove
-/// keywords that a compiler does not know, such as `const`, or to turn every `float` into `double`.
+/// The planner's calls compile while keywords of C are macros. Planners use such macros to remove keywords that a
+/// compiler does not know, such as `const`, or to turn every `float` into `double`.
 #[test]
 fn calls_compile_where_words_of_c_are_macros() {
     let bench = Bench::new();

@@ -56,7 +56,9 @@ fn a_sandbox_that_forbids_a_system_call_is_named_as_the_cause() {
     let program = bench.build(c_compiler(), &strict(&[]), &["sandbox.c"]);
     let run = bench.run(Command::new(program));
     if run.status.code() == Some(NOT_PERMITTED) {
-        return c::skip("a sandbox", "the system does not permit seccomp filters: permit them");
+        let reason = "the system does not permit seccomp filters: use a kernel with them, or a container whose profile \
+                      permits prctl";
+        return c::skip("a sandbox", reason);
     }
     assert!(run.status.success(), "{}\n{}", run.status, said(&run));
     assert!(!said(&run).contains("panicked"), "{}", said(&run));
@@ -154,7 +156,7 @@ fn tools_print_hostile_names_in_one_line() {
         run(&["calibrate".as_ref(), "--config".as_ref(), name]);
         run(&["board".as_ref(), "--config".as_ref(), name]);
         if name.to_str().is_some() {
-            // An order that does not exist is wrong usage.
+            // An unknown order to `sun2xp board` is wrong usage.
             run_with_status(2, &["board".as_ref(), "--order".as_ref(), name]);
         }
         let costs = folder.path().join("costs");

@@ -1,4 +1,4 @@
-//! Tests equations 8, 18-20 and the upper bound against their definitions and against a search.
+//! Tests equations 5, 8, 18-20 and the upper bound of the tensions against their definitions and against a search.
 
 use nalgebra::{Matrix3x4, RowVector4, Vector3, Vector4};
 use proptest::prelude::*;
@@ -114,8 +114,8 @@ proptest! {
         }
     }
 
-    /// The work of the joint torques equals the work of a tip spring, eq. 5, also for a Kx that couples directions.
-    /// There is no damping at rest.
+    /// At rest there is no damping, and the work of the joint torques equals the work of a tip spring, eq. 5, also for
+    /// a Kx that couples directions. In motion, the damper feeds no power into the finger.
     #[test]
     fn joint_torques_are_those_of_the_tip_spring(
         theta in prop::array::uniform3(-1.0..1.0f64), away in prop::array::uniform3(-0.2..0.2f64),

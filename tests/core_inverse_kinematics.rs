@@ -18,7 +18,8 @@ fn configured() -> InverseKinematics {
 }
 
 /// Joint angles within the limits of the default finger. The two elbow solutions for a tip position differ in the sign
-/// of joint 2. The limits admit only positive angles of joint 2, and only some of the solutions with a positive angle.
+/// of joint 2. The limits exclude every solution with a negative angle of joint 2, and some solutions with a positive
+/// angle.
 fn admissible() -> impl Strategy<Value = Vector3<f64>> {
     let degrees = (-60.0..60.0f64, -30.0..100.0f64, 5.0..120.0f64);
     degrees.prop_map(|(a, b, c)| Vector3::new(a, b, c).map(f64::to_radians))
@@ -91,13 +92,13 @@ proptest! {
 
 #[test]
 fn borders_of_the_workspace_belong_to_it() {
-    // The outstretched and the folded finger are double solutions.
+    // In the outstretched and in the folded pose, the two elbow solutions coincide.
     for (theta, tolerance) in [(Vector3::new(0.3, 0.4, 0.0), 1e-7), (Vector3::new(0.3, 0.4, PI), 1e-7)] {
         let tip = LINKS.tip(&theta);
         let found = unlimited().joints(&tip, &theta).expect("on the border");
         assert!((LINKS.tip(&found) - tip).amax() < tolerance, "{found}");
     }
-    // Joint limits, with the tip rounded to float.
+    // Each corner of the joint limits is found again, although its tip position is rounded to float.
     let (low, high) = ConfiguredFinger::default().joint_limits();
     for corner in 0..8 {
         let theta = Vector3::from_fn(|joint, _| if corner >> joint & 1 == 0 { low[joint] } else { high[joint] });

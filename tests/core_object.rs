@@ -15,7 +15,7 @@ const NOBODY: [Option<TipMotion>; FINGERS] = [None; FINGERS];
 
 const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, 9.81);
 
-/// Nanoseconds of a step.
+/// Time by which a step advances the board, ns.
 const STEP: u64 = 100_000;
 
 fn brick() -> ConfiguredObject {
@@ -80,9 +80,9 @@ fn a_box_on_a_table_rests_where_its_corners_carry_its_weight() {
     );
 }
 
-/// Returns the motion of a flat box along three fingertips, on which it lies as on a table. Gravity leans by this
-/// angle against the normal of the plane of the tips.
-fn slides_on_three_tips(degrees: f64) -> Vector3<f64> {
+/// Returns the displacement of a flat box between 0.1 and 0.2 s, m. The box lies on three fingertips as on a table.
+/// Gravity leans by this angle against the normal of the plane of the tips.
+fn displacement_on_three_tips(degrees: f64) -> Vector3<f64> {
     let plate = ObjectShape::Box { size: [8.0, 8.0, 1.0] };
     let configured = ConfiguredObject { shape: plate, position: [0.0; 3], ..Default::default() };
     let mut object = FreeObject::new(&configured, on_a_slope(degrees));
@@ -101,11 +101,11 @@ fn slides_on_three_tips(degrees: f64) -> Vector3<f64> {
 #[test]
 fn friction_holds_below_its_angle_and_yields_above() {
     // The friction of 0.6 holds up to 31 degrees.
-    let held = slides_on_three_tips(29.0);
+    let held = displacement_on_three_tips(29.0);
     assert!(held.norm() < 1e-7, "{held}");
     // Above this angle, the box slides with the acceleration g (sin - 0.6 cos), here 0.6 m/s^2. Between 0.1 and 0.2 s
     // it slides by 9.1 mm.
-    let slid = slides_on_three_tips(34.0);
+    let slid = displacement_on_three_tips(34.0);
     let acceleration = 9.81 * (34f64.to_radians().sin() - 0.6 * 34f64.to_radians().cos());
     let expected = acceleration * 0.015;
     assert!((slid.x / expected - 1.0).abs() < 0.05, "{slid} instead of {expected}");
@@ -150,7 +150,7 @@ proptest! {
         ..Default::default()
     })]
 
-    /// Braked fingers without commands: an object is thrown between them, and onto a table.
+    /// An object is thrown between braked fingers that get no commands, and in some cases onto a table.
     #[test]
     fn fingers_and_object_never_create_energy(
         joints in prop::array::uniform3((-15.0..15.0f64, -28.0..10.0f64, 60.0..100.0f64)),

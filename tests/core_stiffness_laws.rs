@@ -1,4 +1,4 @@
-//! Tests both stiffness laws and every contact type against the definitions in section 4.2 of the report.
+//! Tests both stiffness laws, and the three contact types of section 4.2 of the report, against their definitions.
 
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector6};
 use proptest::prelude::*;
@@ -23,8 +23,8 @@ fn soft_finger(root: [f64; 16], normal: [f64; 3]) -> (Matrix4<f64>, Vector3<f64>
     (k, normal, Contact::soft_finger(k, normal).expect("a spring"))
 }
 
-/// Joint angles with which the tip is off the axis of joint 0. If the tip is on this axis, its spring does not hold
-/// joint 0.
+/// Joint angles with which the tip is more than 5 mm off the axis of joint 0. Nearer to this axis, joint 0 has an
+/// additional spring, which the formulas of these tests do not contain.
 fn theta() -> impl Strategy<Value = Vector3<f64>> {
     (-1.0..1.0f64, -0.5..1.7f64, 0.1..2.0f64)
         .prop_map(|(a, b, c)| Vector3::new(a, b, c))
@@ -170,7 +170,8 @@ proptest! {
         prop_assert!(apart(1e-4) <= apart(1e-3) * 0.02 + 1e-9);
     }
 
-    /// The damper removes energy in proportion to the planner's ratio, and does not change the spring.
+    /// The torque of the damper is proportional to the planner's ratio, and removes energy. The finger is at its set
+    /// point, so the spring exerts no torque.
     #[test]
     fn damping_is_in_proportion_to_its_ratio(
         theta in theta(), rates in prop::array::uniform3(-3.0..3.0f64), ratio in 0.2..3.0f64,
@@ -186,8 +187,8 @@ proptest! {
     }
 }
 
-/// The finger is turned about the normal only, and the spring turns it back. This tests the torsion of a soft finger
-/// without translation.
+/// The finger is turned about the normal only, and the spring turns it back. The soft finger has no translational
+/// stiffness, so only its rotational stiffness exerts a torque.
 #[test]
 fn torsion_alone_turns_the_tip_back_about_the_normal() {
     let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.0, 0.0, 0.0, 10.0));
@@ -196,7 +197,7 @@ fn torsion_alone_turns_the_tip_back_about_the_normal() {
     let desired = Vector3::new(0.4, 0.4, 0.0);
     let report = law().spring(&set_point(desired, &contact, Law::Report).into(), &theta);
     assert!((report - Vector3::new(3.0, 0.0, 0.0)).amax() < 1e-12, "{report}");
-    // The rotation vector of a turn about y by 0.3 rad is 0.3 y, whatever the other joints.
+    // The rotation vector of a turn about y by 0.3 rad is 0.3 y, whatever the angles of the other joints.
     let exact = law().spring(&set_point(desired, &contact, Law::Exact).into(), &theta);
     assert!((exact - report).amax() < 1e-12, "{exact}");
 }
@@ -215,8 +216,8 @@ fn a_frictionless_point_slides() {
     assert_eq!(eigenvalues.iter().filter(|&&value| value.abs() > 1e-9).count(), 1);
 }
 
-/// The torque of a soft finger keeps its direction when the finger is turned away by more than half a turn. Contact
-/// type 4 resists the rotation about the normal, here the axis of joints 1 and 2.
+/// The torque of a soft finger keeps its direction when the finger is turned away by more than half a turn. A soft
+/// finger resists the rotation about the normal, which is parallel to the axes of joints 1 and 2 here.
 #[test]
 fn beyond_half_a_turn_the_torque_of_a_soft_finger_keeps_its_direction() {
     let theta = Vector3::new(0.0, -0.5, 0.1);

@@ -1,5 +1,5 @@
-//! The driving-point admittance of a fingertip: it agrees with a sinusoidal force on the simulated finger, and it shows
-//! which controller is passive.
+//! Tests of the driving-point admittance of a fingertip: it predicts how the tip of the simulated finger moves under a
+//! sinusoidal force, and it shows which controller is passive.
 
 use nalgebra::{Complex, Matrix3, Vector3, Vector4};
 use std::f64::consts::TAU;

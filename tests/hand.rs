@@ -160,7 +160,7 @@ fn a_rate_the_line_cannot_carry_is_refused_with_the_arithmetic() {
     configuration.fingers[1].baud = 115_200;
     let Err(HandError::Configuration(ConfigurationError::Unusable { section, unusable })) = Hand::open(configuration)
     else {
-        panic!("115 200 baud carry no 1000 cycles a second")
+        panic!("115 200 baud cannot carry 1000 cycles a second")
     };
     assert_eq!((section.as_str(), unusable.key), ("finger.2", "baud"));
     assert!(unusable.reason.contains("us"), "{}", unusable.reason);

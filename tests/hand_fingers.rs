@@ -1,4 +1,5 @@
-//! A hand that opens only some fingers: the ports of the others are not touched.
+//! Tests that a hand that opens only some fingers does not touch the ports of the others. Also tests the bound of Kx
+//! below the initial stiffness, and the search for boards by their unique numbers.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -112,7 +113,7 @@ fn a_hand_of_one_finger_is_a_hand() {
     assert!(matches!(other, HandError::NotInHand { finger: FingerNumber::ONE, .. }), "{other}");
 }
 
-/// The initial stiffness has eigenvalues of 3 N/cm, and cannot change while the hand is open.
+/// `stiffness.initial` has eigenvalues of 3 N/cm, and this key cannot change while the hand is open.
 #[test]
 fn the_bound_can_fall_below_the_initial_stiffness() {
     let hand = Hand::open(slow()).expect("open");

@@ -117,7 +117,8 @@ fn an_adjustment_takes_effect_completely_or_not_at_all() {
     ];
     let errnos = refused.map(|result| result.expect_err("refused").errno());
     assert_eq!(errnos, [libc::EINVAL, libc::EINVAL, libc::EBUSY, libc::EINVAL, libc::ERANGE]);
-    // The refusal of an unusable value names its line, or its key alone if this key is not one of the keys to adjust.
+    // A refusal names the key whose value is unusable. If this key is one of the keys to adjust, the refusal also names
+    // its line.
     for (keys, place) in [
         ("tendon.minimum = 4\ntendon.maximum = 0.01", "finger 1, line 2 of the keys to adjust: tendon.maximum: "),
         ("tendon.minimum = 900", "finger.1.tendon.maximum: "),
@@ -162,7 +163,7 @@ fn is_refused_damping(result: &Result<(), HandError>) -> bool {
 #[test]
 fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
     let hand = open(Configuration::default());
-    // A path over 40 s must begin at rest. The reference comes to rest after the finger has become a spring.
+    // A path that lasts 40 s must begin at rest. The reference comes to rest after the finger has become a spring.
     taken_in(&hand, 1);
     until("the reference rests", || {
         let motion = hand.report(1).expect("report").reference.motion;
@@ -201,7 +202,7 @@ fn damping_is_checked_against_the_stiffest_kx_of_a_path() {
 }
 
 /// Sends a path on which joint 1 goes to 1.2 rad, and then to 0.5 rad.
-fn send_path_beyond_its_end(hand: &Hand) {
+fn send_path_that_returns(hand: &Hand) {
     let pose = |time, angle| PathPose { time, pose: Pose::Joints([0.0, angle, 1.0]), stiffness: None };
     hand.send_path(1, &[pose(2.0, 1.2), pose(4.0, 0.5)], None).expect("sent");
 }
@@ -209,7 +210,7 @@ fn send_path_beyond_its_end(hand: &Hand) {
 #[test]
 fn an_adjustment_checks_the_whole_path() {
     let hand = open(Configuration::default());
-    send_path_beyond_its_end(&hand);
+    send_path_that_returns(&hand);
     let refused = hand.adjust(1, "joints.maximum_degrees = [60, 60, 120]").expect_err("60 degrees are 1.05 rad");
     assert!(matches!(refused, HandError::SetPoint(SetPointError::PathBeyondJointLimit { joint: 1, .. })), "{refused}");
     assert_eq!(refused.errno(), libc::ERANGE);
@@ -235,7 +236,7 @@ fn a_clamped_path_beyond_the_adjusted_limits_ends() {
     let mut configuration = Configuration::default();
     configuration.hand.out_of_range = OutOfRange::Clamp;
     let hand = open(configuration);
-    send_path_beyond_its_end(&hand);
+    send_path_that_returns(&hand);
     taken_in(&hand, 1);
     hand.adjust(1, "joints.maximum_degrees = [60, 60, 120]").expect("adjusted");
     taken_in(&hand, 1);

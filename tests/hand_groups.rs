@@ -1,4 +1,5 @@
-//! Groups of fingers, waiting for them, and their kinematics, on a hand with simulated boards in real time.
+//! Tests of commands to groups of fingers, of waiting for fingers, of their kinematics, and of changes of gravity. The
+//! hand has simulated boards that run in real time.
 
 #[allow(dead_code)]
 #[path = "common/pauses.rs"]
@@ -40,7 +41,7 @@ fn a_planner_waits_until_a_group_has_arrived_and_settled() {
         }
         hand.wait(&[3, 1], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     }
-    // A wait for fingers that have arrived returns at once, even with a time limit of 0.
+    // A wait whose condition already holds returns at once, even with a time limit of 0.
     hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     hand.wait(&[1, 2, 3], Until::Settled, Duration::ZERO).unwrap_or_else(|error| panic!("{error}"));
     hand.wait(&[], Until::Arrived, Duration::ZERO).unwrap_or_else(|error| panic!("{error}"));
@@ -88,7 +89,7 @@ fn a_group_with_a_refused_command_changes_no_finger() {
     while !matches!(hand.report(2).expect("a report").stage, Stage::Faulted(_)) {
         std::thread::yield_now();
     }
-    // The fault is reported rather than a damping that is not admitted, whichever finger the damping is for.
+    // The error is the fault of finger 2, even if the damping for finger 1 or 2 is out of range.
     let bad = good.damping(99.0);
     for others in [FingerCommand::new(2), FingerCommand::new(2).damping(99.0)] {
         for first in [good, bad] {
@@ -112,7 +113,7 @@ fn kx(stiffness: f64) -> [[f64; 3]; 3] {
     (Matrix3::identity() * stiffness).into()
 }
 
-/// The order is that of the manual: EINVAL, EDOM, ERANGE. The order of the fingers does not matter.
+/// The manual lists these reasons in the order EINVAL, EDOM, ERANGE. The order of the fingers does not matter.
 #[test]
 fn a_group_is_refused_for_the_reason_that_its_manual_lists_first() {
     let hand = open();
@@ -244,7 +245,7 @@ fn gravity_turns_while_the_hand_is_open() {
         let replayed = recording.replay().expect("replayable");
         assert!(replayed.different == 0 && replayed.cycles > 500, "{replayed:?}");
     }
-    // Dry friction carries a part of the weight, which differs from finger to finger.
+    // Dry friction carries a part of the weight. This part differs between fingers, so the test checks a sum over them.
     let turned: f64 = one.iter().zip(&other).map(|(one, other)| (one - other).amax()).sum();
     assert!(turned > 6.0, "the fingers carry their weight: {one:?} {other:?}");
     for gravity in [[f64::NAN, 0.0, 0.0], [0.0, 0.0, 101.0]] {

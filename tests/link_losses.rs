@@ -242,7 +242,8 @@ fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     configuration.fingers[0].controller.scheme = Some(Scheme::Figure10);
     let mut rig = Rig::new(&mut configuration);
     rig.cycles(200);
-    // The sample of the last good reply was taken when this cycle's command arrived.
+    // The last good reply has the sample that the board takes when the command of this cycle arrives. So the times
+    // below count from this cycle.
     rig.finger.servo.cycle();
     let good = rig.report().last;
     rig.world.place().hooks.silent = true;

@@ -48,7 +48,7 @@ impl Drop for Process {
     }
 }
 
-/// Runs a process for two seconds, with the processes `beside` on the same core. Returns how long it
+/// Runs `script` for two seconds, with the scripts `beside` on the same core. Returns how long the process of `script`
 /// waited for the core in the worst span of half a second, and a description of the measurements.
 fn waited(script: &str, beside: &[&str], meanwhile: impl Fn(u32)) -> (Duration, String) {
     let process = Process::start(script);

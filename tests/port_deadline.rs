@@ -1,4 +1,5 @@
-//! A port keeps its deadlines while the machine is so busy that the kernel's worker cannot carry the bytes.
+//! A port keeps its deadlines while the machine is so busy that the kernel worker that carries the bytes of a
+//! pseudo-terminal cannot run.
 
 #[path = "common/pseudo_terminal.rs"]
 mod pseudo_terminal;
@@ -20,8 +21,8 @@ use sun2xp::realtime::{self, Priority, spawn};
 
 const MS: u64 = 1_000_000;
 
-/// The processors are kept busy for at most this long. The kernel keeps some of the time for ordinary threads, but only
-/// after almost a second.
+/// Longest time for which the processors are kept busy. Only after almost a second would the kernel run ordinary
+/// threads in spite of the busy real-time threads.
 const BUSY_AT_MOST: Duration = Duration::from_millis(400);
 
 /// Opens a port. Returns the board's end of its line too.
@@ -98,7 +99,7 @@ fn no_byte_stays_behind_whatever_the_sizes_of_chunks_and_buffers() {
     let mut random = Pcg64::seed_from_u64(7);
     let (mut buffer, mut sent, mut read) = ([0; 5000], 0_u8, 0_u8);
     for _ in 0..5000 {
-        // The input buffer of a terminal is a ring of 4096 bytes.
+        // Some chunks are larger than the input buffer of a terminal, which is a ring of 4096 bytes.
         let chunk: Vec<u8> = (0..random.next_u32() % 4999 + 1).map(|place| sent.wrapping_add(place as u8)).collect();
         sent = sent.wrapping_add(chunk.len() as u8);
         board_end.write_all(&chunk).expect("written");

@@ -1,4 +1,4 @@
-//! The key `real_time`, and its behaviour when the limits of the process are too small.
+//! Tests the key `real_time`, also in processes whose limits are too small for real-time operation.
 #![allow(unsafe_code)]
 
 #[allow(dead_code)]
@@ -90,7 +90,7 @@ fn the_memlock_limit_of_the_message_suffices_at_every_rate() {
     configuration.hand.rate = *RATES.end();
     let most = most_locked_while(|| Hand::open(configuration)) - before;
     assert!(most <= bytes, "{most} bytes are locked, but: {message}");
-    // An earlier message named 8 MiB. If 8 MiB sufficed, this test would prove nothing.
+    // In an earlier version, the message named 8 MiB. If 8 MiB sufficed, this test would prove nothing.
     assert!(most > 8 << 20, "only {most} bytes are locked");
 }
 

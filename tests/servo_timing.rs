@@ -27,8 +27,8 @@ struct Clocks {
     withheld: bool,
     /// Number of times that the host has read its clock since its last wake-up.
     readings: Cell<u32>,
-    /// The number of a reading since the last wake-up, where the first is 1, and the time that passes before this
-    /// reading, ns. The time passes only once, and not in later cycles.
+    /// A pair (n, t): t ns pass before the host reads its clock for the n-th time after a wake-up. This happens only
+    /// once, and not in later cycles.
     busy: Cell<(u32, u64)>,
 }
 
@@ -47,7 +47,8 @@ impl Hooks for Clocks {
     fn read_until(&mut self, cable: &mut SimulatedCable, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
         let taken = match self.withheld {
             true => 0,
-            // Takes no more than what has arrived: time passes here, not in the cable.
+            // The cable gets the present time as its deadline, so it returns only what has arrived by now. Time passes
+            // in this function, not in the cable.
             false => cable.read_until(buffer, self.board_time())?,
         };
         if taken == 0 {
@@ -126,7 +127,7 @@ fn a_late_cycle_runs_late_and_skipped_periods_are_not_made_up() {
     let losses = rig.finger.mailbox.report().losses;
     assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods, losses.lost_replies), (10, 0, 0, 0));
 
-    // This cycle runs 3.4 periods late. Two periods are skipped, and the cycle of the third begins at once.
+    // This cycle runs 3.4 periods late. The next two periods are skipped, and the cycle of the third begins at once.
     rig.world.place().hooks.oversleep = 3 * PERIOD + 400_000;
     rig.cycles(6);
     let losses = rig.finger.mailbox.report().losses;

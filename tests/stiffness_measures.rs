@@ -1,5 +1,5 @@
-//! Tests the measurements of `cargo bench --bench stiffness` where they could be wrong: against known results, and
-//! against fingers that must fail.
+//! Tests the measurements of `cargo bench --bench stiffness`: they must reproduce known results, and must detect
+//! controllers that are wrong.
 
 #![allow(dead_code, reason = "the bench uses the rest of these files")]
 

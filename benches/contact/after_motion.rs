@@ -17,7 +17,7 @@ pub const FORCE: f64 = 1.0;
 /// Times from the end of the motion of the set point to the push, s. A negative time is before the end.
 pub const DELAYS: [f64; 5] = [-0.1, 0.0, 0.05, 0.2, 1.0];
 
-/// Duration of the part of a push that follows the motion, s.
+/// Time for which a push acts after the end of the motion, s.
 const PUSH: f64 = 0.5;
 /// Duration of the last part of a push, in which the estimate is compared, s.
 const COMPARED: f64 = 0.2;

@@ -3,9 +3,9 @@
 //!     cargo bench --bench handwritten
 //!
 //! First a closed loop is run and recorded. In every cycle of the recorded run, the motor torques of both steps must
-//! agree within 1e-9 of the largest torque. Then the two steps repeat the run alternately. The measured time begins
-//! with the counts and ends with the motor torques and the report. Neither step computes statistics. The library's step
-//! also estimates the contact force, and the handwritten step does not.
+//! agree within 1e-9 of the largest torque. Then the two steps repeat the run alternately. The measured computation
+//! takes the counts of the encoders and gauges, and yields the motor torques and the report. Neither step computes
+//! statistics. The library's step also estimates the contact force, and the handwritten step does not.
 
 mod agreement;
 mod by_hand;

@@ -106,7 +106,8 @@ static void approach(struct spring *spring, const double stiffness[TIP][TIP], do
     spring->damping += (damping - spring->damping) * part;
 }
 
-/* The joint torques of the spring, its damper and the soft limits. Advances the anchor. */
+/* Computes the joint torques of the spring, of its damper and of the soft limits. Moves the anchor, the rest position
+   of the spring, toward the set point. */
 static void joint_torques(const struct parameters *p, struct state *s, const struct set_point *set_point,
                           double torques[JOINTS])
 {

@@ -98,8 +98,8 @@ static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
     return held * lacking;
 }
 
-/* Returns the part of K_theta that the tendons can carry while the motors are locked. The tendons carry the stiffness
- * of the soft joint limits first, and K_theta gets what is left. */
+/* Returns the largest fraction of K_theta, at most 1, that the tendons can carry while the motors are locked. The
+ * tendons carry the stiffness of the soft joint limits first, and K_theta gets what is left. */
 static double admissible(const struct parameters *p, const double k_theta[JOINTS][JOINTS], const double limits[JOINTS])
 {
     double half[JOINTS][JOINTS], transposed[JOINTS][JOINTS], whole[JOINTS][JOINTS];

@@ -52,7 +52,7 @@ const END: u8 = 2;
 
 /// A clock that sleeps as usual until the fingers are under control. Afterwards it does not sleep. The servos begin at
 /// an ordinary rate because, on a machine with other work, a servo that never sleeps would prevent the system from
-/// transporting the bytes of its own terminals.
+/// transporting the bytes of the servo's pseudo-terminal.
 #[derive(Clone)]
 pub struct UnlimitedClock {
     pub phase: Arc<AtomicU8>,
@@ -73,13 +73,13 @@ impl Clock for UnlimitedClock {
 /// Time limit for the fingers to come under control. Other work on the machine slows them down.
 const OPENING: Duration = Duration::from_secs(30);
 
-/// A measurement is repeated if a finger was not under control, up to this number of attempts.
+/// Largest number of attempts. The measurement is repeated if a finger was not measured.
 const ATTEMPTS: u32 = 3;
 
 /// A finger counts as not measured if it stayed under control for less than this time.
 const SHORTEST: Duration = Duration::from_millis(500);
 
-/// The phase of the measurement. Dropping it ends the servo threads, whatever the result.
+/// The phase of the measurement. Dropping this value ends the servo threads, even if the measurement fails.
 struct Phase(Arc<AtomicU8>);
 
 impl Drop for Phase {

@@ -1,4 +1,5 @@
-//! The sides of a comparison are measured alternately, so that a disturbance of the machine affects them alike.
+//! The cases of a comparison (its sides) are measured alternately, so that a disturbance of the machine affects them
+//! alike.
 
 /// Number and duration of the measurements.
 #[derive(clap::Args)]

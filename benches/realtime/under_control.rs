@@ -1,8 +1,8 @@
-//! Whether a finger was under control to the end of a measurement.
+//! A check that a finger is under control.
 
 use sun2xp::finger::Stage;
 
-/// Checks that a finger is a spring.
+/// Checks that a finger is under control: that its stage is [`Stage::Running`].
 ///
 /// # Errors
 /// Says in which stage the finger is, or which fault has stopped it.

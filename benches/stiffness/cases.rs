@@ -1,4 +1,4 @@
-//! The measured cases: poses, springs and directions, all from one seed.
+//! The measured cases. The poses of a case, its random springs and its directions follow from the seed of the case.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use rand_distr::{Distribution, UnitSphere};

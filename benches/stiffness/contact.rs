@@ -14,7 +14,7 @@ pub const INTO: f64 = 0.4;
 /// Distance of the tip from a wall before the anchor moves, cm.
 pub const OFF: f64 = 0.05;
 
-/// The motion of a finger that was moved into a wall.
+/// The motion of a finger whose anchor was moved into a wall. The times count from this move.
 pub struct Residual {
     /// Motion from 1.7 to 2 s, cm rms.
     pub late: f64,
@@ -42,8 +42,8 @@ impl Residual {
     }
 }
 
-/// Moves the anchor into a wall, and returns the motion of the finger. Returns `None` if the anchor cannot be that far
-/// inside the wall.
+/// Moves the anchor into a wall, and returns the motion of the finger. Returns `None` if the place of the anchor inside
+/// the wall is out of the finger's reach.
 fn into_wall(case: &Case, pose: &Vector3<f64>, stiffness: f64, wall: f64, outward: &Vector3<f64>) -> Option<Residual> {
     let mut finger = ClosedLoop::at(case, pose, Friction::None, &(Matrix3::identity() * stiffness));
     let tip = finger.anchor();
@@ -69,8 +69,9 @@ pub fn residual(tips: &[Vector3<f64>]) -> f64 {
 
 /// The result of a torque beyond the limits.
 pub struct OverLimit {
-    /// Largest true tension minus t_max, N: at rest, and before the finger has come to rest.
+    /// Largest true tension after the finger has come to rest, minus t_max, N.
     pub excess: f64,
+    /// Largest true tension before the finger has come to rest, minus t_max, N.
     pub excess_on_the_way: f64,
     /// Angle between the mean joint torque of the true tensions and the mean joint torque that the law required,
     /// degrees.

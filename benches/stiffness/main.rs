@@ -66,10 +66,10 @@ struct Arguments {
     /// selects all fingers.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
     truths: Option<String>,
-    /// With --truths: first identifies each finger, and measures it with the identified values.
+    /// With --truths or --search: first identifies each finger, and measures it with the identified values.
     #[arg(long)]
     identified: bool,
-    /// With --truths: number of seeds.
+    /// With --truths: number of seeds. With --search, at most two seeds are used.
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..))]
     seeds: u64,
     /// With --truths: instead of the table, measures whether each finger comes to rest at both ends of the range of

@@ -30,7 +30,7 @@ pub struct Stability {
     pub largest: f64,
 }
 
-/// Number of samples in a row of this file for each pose in the other rows of the table.
+/// Number of samples in a row of this file, divided by the number of poses in the other rows of the table.
 const DENSITY: usize = 20;
 
 /// Returns samples in random poses within `limits`. No spring is stiffer than the bound on Kx, and the loads are small.

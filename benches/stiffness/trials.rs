@@ -1,4 +1,5 @@
-//! Trials of a finger that differs from its configuration: pushes, rest, steps, walls and bumps, with its monitors.
+//! Trials of a finger that differs from its configuration: pushes, rest, steps, walls and bumps. The monitors of the
+//! finger run during the trials.
 
 use crate::cases::{Case, Friction, axes, direction, has_room};
 use crate::closed_loop::{ClosedLoop, Held, Senses};

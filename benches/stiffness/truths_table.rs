@@ -11,7 +11,7 @@ use std::time::Instant;
 use sun2xp::control::Numbers;
 use sun2xp::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme};
 
-/// Largest motion of a finger that counts as at rest, cm rms.
+/// A finger whose motion is at most this, cm rms, counts as at rest.
 const AT_REST: f64 = 0.005;
 
 pub fn run(arguments: &Arguments, only: &str, begun: Instant) -> Result<(), Box<dyn Error>> {

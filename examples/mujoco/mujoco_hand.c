@@ -106,10 +106,10 @@ static int advance(struct step *step, struct memory *memory)
     return 0;
 }
 
-/* The first exchange of a cycle advances the simulation by one period, with the torques of the previous cycle. A new
-   deadline marks the first exchange. This need not be the exchange of finger 1, because a faulted finger gets no
-   exchange. All fingers are sampled at the end of this period. The torques of the present cycle act in the next
-   period. */
+/* The first exchange of a cycle advances the simulation by one period, with the torques of the previous cycle. All
+   fingers are sampled at the end of this period. The torques of the present cycle act in the next period. A new
+   deadline marks the first exchange of a cycle. The first exchange need not be that of finger 1, because a faulted
+   finger gets no exchange. */
 static int exchange(void *user, const struct sun2xp_io_command *command, struct sun2xp_io_sample *sample)
 {
     struct finger *finger = user;

@@ -8,7 +8,8 @@
 #define CRC32_START 0xFFFFFFFFu
 uint32_t crc32_add(uint32_t crc, uint8_t byte);
 
-/* The value after any bytes followed by their correct checksum. It does not depend on the bytes. */
+/* The result of crc32_add after any bytes and their correct checksum, low byte first. The result does not depend on the
+   bytes. */
 #define CRC32_WITH_CHECK 0xDEBB20E3u
 
 #endif

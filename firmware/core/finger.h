@@ -41,12 +41,12 @@ struct finger {
 /* Puts the finger into the state after power-up: idle, with the motors off. */
 void finger_start(struct finger *finger, const struct finger_traits *traits, unsigned index);
 
-/* Checks faults, watchdog and hold time. Call it at least every millisecond, and before a request that arrived at
-   `now`, us, is carried out. */
+/* Checks faults, watchdog and hold time at the time `now`, us. Call it at least every millisecond. Also call it before
+   each request, with the time at which the request arrived. */
 void finger_tick(struct finger *finger, uint32_t now);
 
-/* These functions carry out requests that arrived at `now`, us. Each one writes its answer, or a Refused, to
-   `answer`. */
+/* These functions carry out requests. Each one writes its answer, or a Refused, to `answer`. `now` is the time at which
+   the request arrived, us. */
 void finger_hello(struct finger *finger, const struct frame *request, uint16_t addresses, struct frame *answer);
 void finger_configure(struct finger *finger, const struct frame *request, struct frame *answer);
 void finger_command(struct finger *finger, const struct frame *request, uint32_t now, struct frame *answer);

@@ -9,7 +9,7 @@
 /* Must be all zeros at the start. */
 struct receiver {
     size_t collected; /* Bytes since the last delimiter. Stays at STUFFED_MOST + 1 once there are too many. */
-    size_t next_zero; /* Index, among these bytes, of the next one that stands for a zero. */
+    size_t next_zero; /* Index of the next byte that stands for a zero. The first byte after a delimiter has index 0. */
     uint32_t crc;     /* CRC of the decoded bytes. */
     struct frame frame;
 };

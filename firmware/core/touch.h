@@ -31,7 +31,7 @@ struct touch {
     uint8_t dropped;
 };
 
-/* Reads the elements of the finger with this number in the hardware layer, and queues what has changed. */
+/* Reads the elements of a finger with hal_touch, to which it passes `finger`, and queues what has changed. */
 void touch_scan(struct touch *touch, const struct touch_traits *traits, unsigned finger, uint32_t now);
 
 /* Deletes the event `received` and all events before it, and returns the oldest event that is left. */

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The first eight bytes of the unique numbers. */
+/* The first eight bytes of the unique number of every finger. */
 extern const uint8_t processor_name[8];
 
 /* Starts the clock, the line, and an interrupt that ends line_sleep every half millisecond. */

@@ -1,5 +1,5 @@
-/* The core must set the currents that the formula gives in 64-bit arithmetic, for torques, units, torque constants and
-   limits of all sizes. */
+/* Compares the currents that the core sets with those computed in 64-bit arithmetic, for torques, units, torque
+   constants and limits of all sizes. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"

@@ -80,8 +80,8 @@ void mechanism_advance(struct mechanism *finger, uint32_t microseconds)
 
 void mechanism_sample(const struct mechanism *finger, struct sensors *sensors)
 {
-    /* Converter noise, one count up or down. The library can report a gauge without noise as stuck while the other
-       gauges fluctuate. */
+    /* Converter noise: -1, 0 or +1 count. The library can report a gauge without noise as stuck while the other gauges
+       fluctuate. */
     static uint32_t random = 1;
     for (size_t i = 0; i < MOTORS; i++) {
         /* The encoders read zero when the finger is straight and its tendons have the tensions of the start. */

@@ -10,7 +10,8 @@
 
 enum { LINE_MOST = 4096, BYTES_MOST = 1024 };
 
-/* The line under test, and the conversation to which it belongs; `conversation` is empty if there is none. */
+/* The line under test, and the line that begins its conversation (a sequence of inputs to a board and its responses).
+   `conversation` is empty if the line under test belongs to no conversation. */
 extern const char *current_line;
 extern char conversation[LINE_MOST];
 extern unsigned line_number;

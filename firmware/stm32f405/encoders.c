@@ -6,8 +6,8 @@
 
 static struct timer *const timers[MOTORS] = {TIM2, TIM5, TIM3, TIM4};
 
-/* An edge counts after it has been stable for 6 samples at half of the timer clock of 84 MHz: 0.14 us (RM0090, 18.4.7,
-   ICxF = 4). So an encoder may deliver 3 million edges per second (one in 0.33 us). */
+/* An edge counts after the new level has lasted for 6 samples, 0.14 us. The timer samples at 42 MHz, half of its clock
+   of 84 MHz (RM0090, 18.4.7, ICxF = 4). So an encoder may deliver 3 million edges per second (one in 0.33 us). */
 enum { FILTER = 4 };
 
 static uint32_t raw[MOTORS];
@@ -39,8 +39,8 @@ void encoders_read(int32_t counts[MOTORS])
     for (unsigned motor = 0; motor < 2; motor++)
         counts[motor] = (int32_t)raw[motor];
     for (unsigned motor = 2; motor < MOTORS; motor++) {
-        /* Correct while a motor moves by less than 32 768 counts between two calls. The sum is unsigned, so it may
-           wrap. */
+        /* `moved` is correct if the motor moves by less than 32 768 counts between two calls. The sum is unsigned, so
+           it may wrap. */
         int16_t moved = (int16_t)(uint16_t)((raw[motor] & 0xFFFFu) - latest[motor]);
         latest[motor] = (uint16_t)(raw[motor] & 0xFFFFu);
         extended[motor] = (int32_t)((uint32_t)extended[motor] + (uint32_t)moved);

@@ -47,7 +47,7 @@ void gauges_confirm(void)
     GPIOB->BSRR = 1u << (PIN_GAUGE_CONVERT + 16);
 }
 
-/* Waits until the bits of a register have a value. Returns false if they do not get it. */
+/* Waits until the bits of `mask` in a register equal `wanted`. Returns false if they do not after ROUNDS rounds. */
 static bool becomes(const volatile uint32_t *address, uint32_t mask, uint32_t wanted)
 {
     for (unsigned round = 0; round < ROUNDS; round++)
@@ -82,7 +82,7 @@ void gauges_read(uint16_t counts[MOTORS])
     }
     if (good)
         for (unsigned channel = 0; channel < MOTORS; channel++)
-            /* From two's complement to 0 to 65535. */
+            /* Converts two's complement to offset binary, 0 to 65535. */
             latest[channel] = raw[channel] ^ 0x8000u;
     failures = good ? 0 : failures + 1;
     memcpy(counts, latest, sizeof latest);

@@ -27,7 +27,7 @@ void encoders_start(void);
 void encoders_latch(void);
 
 /* Reads the counts at the last latch. Two counters have only 16 bits, so call encoders_latch and this function before
-   an encoder has delivered 32 768 edges. At 3 million edges per second this takes 10.9 ms. */
+   an encoder has delivered 32 768 edges. An encoder with 3 million edges per second delivers them in 10.9 ms. */
 void encoders_read(int32_t counts[MOTORS]);
 
 void gauges_start(void);

@@ -43,7 +43,7 @@ enum pin_pull { NO_PULL = 0, PULL_UP = 1, PULL_DOWN = 2 };
     PIN(B, 0, INPUT, 0, PULL_DOWN, GAUGE_BUSY, "input", "converter, BUSY")                                             \
     PIN(C, 12, OUTPUT, 0, PULL_DOWN, TOGGLE, "output", "toggle bit, for an oscilloscope")
 
-/* PIN_NAME is the number of each pin within its port. */
+/* Defines PIN_<name> for each pin: the number of the pin within its port. */
 #define PIN_NUMBER(port, number, mode, alternate, pull, name, signal, connection) PIN_##name = number,
 enum { PINS(PIN_NUMBER) };
 #undef PIN_NUMBER

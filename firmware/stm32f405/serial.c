@@ -19,8 +19,8 @@ void serial_start(uint32_t megahertz)
 {
     RCC->APB2ENR |= RCC_APB2ENR_USART1;
     (void)RCC->APB2ENR;
-    /* A bit takes 16 times the divider in bus cycles, and the register holds the divider with four binary places. So
-       the register holds the bus cycles of a bit (RM0090, 30.3.4). */
+    /* A bit takes 16 times the divider, in bus cycles. The register holds the divider in units of 1/16, so its value is
+       the number of bus cycles in a bit (RM0090, 30.3.4). */
     USART1->BRR = (megahertz * 1000000u + BAUD / 2u) / BAUD;
     USART1->CR1 = SERIAL_RUN;
     NVIC_IPR[INTERRUPT_USART1] = PRIORITY;

@@ -8,7 +8,8 @@ pub use loom::cell::UnsafeCell;
 pub use loom::sync::atomic::Ordering;
 
 thread_local! {
-    /// Whether every access is relaxed. All threads of a check run on the thread of the test.
+    /// Whether every access is relaxed. Loom runs all threads of a check on the thread of the test, so they share this
+    /// value.
     static WEAKENED: Cell<bool> = const { Cell::new(false) };
 }
 

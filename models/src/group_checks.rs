@@ -20,13 +20,13 @@ pub fn a_group_takes_effect_in_one_period() {
     let servo = spawn(move || other.period(group, || others_clock.fetch_add(1, Ordering::SeqCst)));
     gate.post(group);
     let own = gate.period(group, || clock.fetch_add(1, Ordering::SeqCst)).expect("it is posted");
-    // A servo that has not seen the group waits for a later cycle.
+    // If the other servo has not seen the group, it looks at the gate again in a later cycle.
     let others = servo.join().expect("no panic");
     let others = others.or_else(|| gate.period(group, || panic!("decided already"))).expect("it is posted");
     assert_eq!(own, others);
 }
 
-/// A servo that sees a posted group has the set point of its finger.
+/// A servo that sees a posted group gets the set point that the group contains for its finger.
 pub fn a_posted_group_has_its_set_points() {
     let report = running();
     let (planner, mut servo, mut memory) = mailbox(report, &Adjustable { number: 0 }, &[0.0; 3]);

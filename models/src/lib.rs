@@ -60,7 +60,7 @@ mod finger {
             pub values: (),
         }
 
-        /// Takes the place of an event without its stamp.
+        /// Takes the place of the occurrence, which is an event without its finger, cycle and time.
         pub struct Occurrence {
             pub kind: (),
             pub part: (),
@@ -159,8 +159,8 @@ use std::sync::Arc;
 /// 2 or 3.
 const PREEMPTIONS: usize = 3;
 
-/// Size of the stack of a thread, in machine words. Loom's documentation says bytes, but its generators count words.
-/// Loom's default is 4096 words. Copies of a finger's report fill such a stack.
+/// Size of the stack of a thread, in machine words. Loom's documentation says bytes, but the coroutines in which loom
+/// runs threads count words. Loom's default is 4096 words. Copies of a finger's report fill such a stack.
 const STACK_WORDS: usize = 32 * 1024;
 
 /// Runs `check` in every order of its threads that has at most `PREEMPTIONS` preemptions.

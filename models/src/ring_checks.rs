@@ -6,7 +6,7 @@ use crate::tracked::Tracked;
 use loom::thread;
 use std::sync::Arc;
 
-/// A reader gets every value that was accepted, whole, once and in order. A ring that is full gives the value back.
+/// A reader gets every value that was accepted, whole, once and in order. A full ring refuses a value.
 pub fn values_arrive_once_and_in_order() {
     let (mut producer, mut consumer) = ring(2);
     let writer = spawn(move || {

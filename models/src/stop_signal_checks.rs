@@ -24,8 +24,8 @@ pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option
     (at_once, signal.pending())
 }
 
-/// A fault stops the fingers that stop together with the faulted one. It is passed on once: the companion does
-/// not pass it back.
+/// A fault of one finger stops its companions, the fingers that stop together with it. The fault is passed on once: a
+/// companion does not pass it back.
 pub fn a_fault_stops_the_companion_once() {
     let first = StopSignal::new(true, stop_calls());
     let mut second = first.clone();

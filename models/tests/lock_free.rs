@@ -7,16 +7,18 @@ use sun2xp_models::{
     triple_buffer_checks, weakened,
 };
 
-/// Environment variable of a process that runs one test with weakened orderings.
+/// Environment variable of a process that runs one test with every atomic access relaxed.
 const WEAKENED: &str = "SUN2XP_TEST_WEAKENED";
 
-/// Runs a check, and runs it again without the orderings of the code. The second run must find a data race.
+/// Runs a check, and runs it again with every atomic access relaxed, as if the code had no memory orderings. The second
+/// run must find a data race.
 fn holds_and_needs_its_orderings(check: impl Fn() + Send + Sync + 'static) {
     holds_and_fails_without_its_orderings("Causality violation", check);
 }
 
-/// Runs a check, and runs it again without the orderings of the code. The second run must fail with this message. It is
-/// a process of its own, because a data race in a destructor ends the process.
+/// Runs a check, and runs it again with every atomic access relaxed, as if the code had no memory orderings. The second
+/// run must fail with `message`. The second run is a process of its own, because a data race in a destructor ends the
+/// process.
 fn holds_and_fails_without_its_orderings(message: &str, check: impl Fn() + Send + Sync + 'static) {
     if std::env::var_os(WEAKENED).is_some() {
         return weakened(|| explore(check));
@@ -105,8 +107,8 @@ fn a_request_to_close_is_answered() {
     explore(mailbox_checks::a_request_to_close_is_answered);
 }
 
-/// The counters pass no other data, so this check needs no ordering. It must reach both results: the finger notices
-/// the call in this cycle, or in a later one.
+/// The counters pass no other data, so this check needs no ordering. The explored orders must give both results: just
+/// after the recovery, the finger notices the second stop call, or it does not notice this call yet.
 #[test]
 fn a_stop_call_during_a_recovery_stops_the_finger() {
     let seen = Arc::new(Mutex::new(Vec::new()));

@@ -56,7 +56,7 @@ def plan(hand: sun2xp.Hand, stop: threading.Event, counts: list) -> None:
 
 
 def measure(hand: sun2xp.Hand, seconds: float, load: str) -> tuple:
-    """Returns the distributions of the wake-ups of all fingers, and how often the planner read and sent."""
+    """Returns the distributions of the wake-ups of all fingers, and how often the planner read and sent the poses."""
     stop, counts = threading.Event(), []
     threads = []
     if load == PLANNER:

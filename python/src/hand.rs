@@ -14,7 +14,7 @@ static HANDS: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
 pub struct Shared {
     /// None: closed. Locked for writing only to take the hand out.
     hand: RwLock<Option<sun2xp::Hand>>,
-    /// The generation of the process that has opened the hand.
+    /// [`fork::generation`] in the process that has opened the hand.
     generation: u32,
 }
 

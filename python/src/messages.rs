@@ -49,7 +49,7 @@ pub fn take_messages() {
 }
 
 /// Returns whether this process has the thread of Python. A forked child does not have it. In the child, a lock that
-/// another thread of the parent held is never released.
+/// another thread of the parent held is never released, so check this before locking [`MESSAGES`].
 fn has_thread() -> bool {
     OWNER.load(Ordering::Relaxed) == fork::generation()
 }
@@ -107,7 +107,7 @@ pub fn end_messages() {
 }
 
 /// Waits until all messages are in the log, but at most for one second: a handler of the log may wait for the caller.
-/// An exception of the handler of a signal ends the wait.
+/// An exception that a signal handler raises ends the wait.
 #[pyfunction]
 pub fn flush_messages(py: Python<'_>) -> PyResult<()> {
     if !has_thread() {

@@ -67,7 +67,7 @@ impl Drop for Pending {
     }
 }
 
-/// Requests all openings to end. Each one ends when it asks the next time whether it is to continue.
+/// Requests all openings to end. Each opening ends at its next call of [`Pending::goes_on`].
 pub fn end_openings() {
     state().ending = true;
 }

@@ -11,7 +11,7 @@ use sun2xp_tool::trace::{self, Item, Mark, Row};
 /// Name, type and shape of a field, as numpy.dtype takes them.
 type Field = (&'static str, &'static str, Vec<usize>);
 
-/// Largest length of a stage's name, characters: type U11.
+/// Largest length of a stage's name, characters. The name's numpy type is therefore U11.
 const LONGEST_STAGE: usize = 11;
 
 /// The cycles of a finger.

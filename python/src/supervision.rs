@@ -83,8 +83,8 @@ impl Hand {
             };
             if let Err(exception) = pause(py, &state, progress) {
                 // Without this stop, the calibration would continue although nobody polls it. It could still move the
-                // joints between their mechanical stops, and the finger would be limp at the end. If the hand was
-                // closed meanwhile, the finger is in its end state.
+                // joints between their mechanical stops, and the finger would be limp at the end. If the stop fails
+                // because the hand was closed meanwhile, the finger is in its end state.
                 let _ = self.0.with(|hand| hand.stop(finger));
                 return Err(exception);
             }

@@ -61,8 +61,7 @@ pub fn until<T: Send>(py: Python<'_>, mut poll: impl FnMut() -> Result<Option<T>
     }
 }
 
-/// Converts a time in s. The result is `None`, which means no limit, if there is no time or if the time is too long for
-/// a `Duration`.
+/// Converts a time in s. Returns `None`, which means no limit, if `seconds` is `None` or is too long for a `Duration`.
 pub fn duration(py: Python<'_>, name: &str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
     match seconds {
         None => Ok(None),
@@ -72,8 +71,7 @@ pub fn duration(py: Python<'_>, name: &str, seconds: Option<f64>) -> PyResult<Op
 }
 
 /// Returns the time for which a set point is valid. `None` stands for the configured time. A time that is too long for
-/// a `Duration` becomes `Duration::MAX`. This is longer than every time that a servo counts, so the set point does not
-/// expire.
+/// a `Duration` becomes `Duration::MAX`. No servo runs for that long, so the set point does not expire.
 pub fn validity(py: Python<'_>, seconds: Option<f64>) -> PyResult<Option<Duration>> {
     Ok(duration(py, "valid", seconds)?.or(seconds.map(|_| Duration::MAX)))
 }

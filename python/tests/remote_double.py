@@ -27,7 +27,7 @@ def answer(code, epoch, number=0, text=""):
 
 def status(turn=0.5, fault=0):
     """The bytes of the Status of a hand with three fingers. Joint 0 turns by at most `turn`, rad, to both sides. Finger
-    2 has this fault."""
+    2 has the fault with the number `fault`, or none if this number is 0."""
     head = STATUS.pack(4, 1, 7, 100, 10_000, 1, time.monotonic_ns(), 1000.0, 10.0, 1.0, *range(8))
     numbers = (5, 0, 0, 0, -turn, 0.0, 0.0, turn, 1.5, 1.5, 4.0, 0.0)
     finger = FINGER.pack(3, 0, 0, *numbers, 0, b"")

@@ -103,7 +103,7 @@ class Scripted:
         fresh = numpy.isin(self.records["finger"], fingers)
         self.records["cycle"][fresh] += 1
         self.records["time"][fresh] = self.now
-        # A finger that has stopped has its newest cycle in every State.
+        # Every State contains the newest cycle of a finger that has stopped.
         sent = self.records[fresh | (self.records["stage"] == _messages.STAGES.index("faulted"))]
         head = struct.pack("<BBHIQQQ", 2, 1, len(sent), 0, self.states, self.now, owner)
         self._subscribers["state"](head + sent.tobytes())

@@ -1,4 +1,4 @@
-"""Arguments that a hand cannot take, and times without a limit."""
+"""Tests arguments that a hand refuses, infinite times, an interrupted opening, and the arrival of a pushed finger."""
 
 import math
 

@@ -43,7 +43,7 @@ class Board:
         return self.process.stdout.readline().split()
 
     def state(self, name, count):
-        """Returns the numbers of the finger's state with this name."""
+        """Returns the numbers that follow this name in the state of the finger."""
         words = self.order("state 2")
         place = words.index(name) + 1
         return [float(word) for word in words[place : place + count]]
@@ -80,5 +80,5 @@ sun2xp.open(text={board.configuration!r})
     _, said = opening.communicate(timeout=60)
     assert "KeyboardInterrupt" in said, said
     _, command, end = board.state("times", 3)
-    # A board that is stopped by its watchdog enters the end state later.
+    # A board that its watchdog stops does not enter the end state so soon after the last Command.
     assert not math.isnan(end) and end - command < WATCHDOG / 2

@@ -97,7 +97,7 @@ def test_several_tasks_wait_for_one_queue(hand):
     async def wait():
         events = hand.events()
         tasks = [asyncio.ensure_future(events.next()) for _ in range(3)]
-        # One of them gives up. The others still wait.
+        # A fourth wait ends without an event. The three tasks still wait.
         assert await events.next(timeout=0.05) is None
         hand.stop(1)
         done, waiting = await asyncio.wait(tasks, timeout=20, return_when=asyncio.FIRST_COMPLETED)

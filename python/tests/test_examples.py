@@ -1,4 +1,4 @@
-"""The examples, the benchmarks and the snippets of the pages run."""
+"""Runs the examples, the benchmarks, and the snippets in Python from the documentation."""
 
 import os
 import pathlib
@@ -13,8 +13,8 @@ import sun2xp
 PYTHON = pathlib.Path(__file__).parent.parent
 ROOT = PYTHON.parent
 
-#: The pages with snippets in Python. Those of docs/ros.md need ROS, and ros/tests runs them. Those of docs/remote.md
-#: need a server, and test_remote_serve.py runs them.
+#: The pages that are searched for snippets in Python. The snippets of docs/ros.md need ROS, and ros/tests runs them.
+#: The snippets of docs/remote.md need a server, and test_remote_serve.py runs them.
 PAGES = [ROOT / "README.md", PYTHON / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SNIPPETS = [
     pytest.param(snippet, id=f"{page.relative_to(ROOT)}-{number}")
@@ -65,7 +65,7 @@ def test_the_snippets_are_found():
 
 @pytest.mark.parametrize("snippet", SNIPPETS)
 def test_a_snippet_of_a_page_runs(snippet, tmp_path):
-    # docs/black-box.md reads a black box.
+    # The snippet of docs/black-box.md reads a black-box file, so the test writes one.
     if "finger-1.jsonl" in snippet:
         with sun2xp.simulated() as hand:
             hand.write_black_box(1, tmp_path / "finger-1.jsonl")

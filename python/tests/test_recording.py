@@ -1,4 +1,4 @@
-"""Recordings and black boxes as arrays, and the tool of the wheel."""
+"""Recordings and black boxes that are read as arrays, and the tool `sun2xp` that the wheel installs."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""The common name that `sun2xp.remote` reads from the certificate of a client, and files that have none."""
+"""Tests that `sun2xp.remote` reads the common name from a client's certificate, and refuses damaged certificates."""
 
 import base64
 

@@ -48,7 +48,7 @@ def test_joint_angles_have_the_name_of_the_argument(remote):
         remote.send_path(1, [1.0], [[0.0, float("nan"), 0.0]])
 
 
-def test_a_hand_that_is_closed_or_lost_is_named_with_its_remedy(server, remote):
+def test_a_closed_or_lost_hand_has_its_errno_and_remedy(server, remote):
     server.state(owner=server.number + 1)
     with pytest.raises(sun2xp.remote.NotOwner) as lost:
         remote.send_position(1, HOME)
@@ -120,7 +120,7 @@ def test_a_request_that_fails_refuses_no_argument(server, remote, call, number):
 
 @pytest.mark.parametrize(("reported", "name"), [(True, ": lost replies (17 ms)"), (False, "")])
 def test_a_fault_has_its_name_unless_the_server_does_not_report_it(server, remote, monkeypatch, reported, name):
-    """The text of the fault in a Status ends in the middle of a word. Only its beginning is shown."""
+    """The text of the fault in a Status ends in the middle of a word. The error has only the part before the colon."""
     remote.send_position(2, HOME)
     server.records["stage"][1], server.records["fault"][1] = _messages.STAGES.index("faulted"), 13
     server.status = {"fault": 13}

@@ -15,7 +15,7 @@ import pytest
 import sun2xp
 import sun2xp.remote
 
-#: Path of the program sun2xp-serve. tests/installed sets the variable.
+#: Path of the program sun2xp-serve. tests/installed sets SUN2XP_SERVE.
 SERVER = os.environ.get("SUN2XP_SERVE")
 
 pytestmark = pytest.mark.skipif(SERVER is None, reason="SUN2XP_SERVE does not name the program sun2xp-serve")

@@ -25,7 +25,7 @@ REPEAT = 1.0
 
 
 class Commands:
-    """Subscribes to trajectories, targets of fingertips and stiffnesses."""
+    """Subscribes to trajectories, stiffnesses and targets of fingertips."""
 
     def __init__(self, node: Node, hand: sun2xp.Hand, fingers: Sequence[int], prefix: str) -> None:
         self._node = node
@@ -34,7 +34,7 @@ class Commands:
         self._prefix = prefix
         self._said: Dict[str, float] = {}
         self._waiting = WaitingTrajectories(node)
-        #: Pose of each finger's frame in the palm's: origin, cm, and axes as columns.
+        #: Pose of each finger's frame in the palm's frame: the origin, cm, and the axes as columns.
         self._mounts: Dict[int, Tuple[numpy.ndarray, numpy.ndarray]] = {}
         subscribe = partial(self._subscribe, node)
         subscribe(JointTrajectory, "joint_trajectory", "trajectory", self._move)

@@ -12,7 +12,7 @@ _NORMAL = ("opening", "calibrating", "running")
 
 
 class FingerDiagnostics:
-    """Describes one finger, and what it has lost since the previous description."""
+    """Describes one finger, and the replies and periods that were lost since the previous description."""
 
     def __init__(self, hand: sun2xp.Hand, finger: int, name: str) -> None:
         self._hand = hand

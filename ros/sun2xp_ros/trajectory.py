@@ -41,10 +41,10 @@ def begins_in(message: Any, now: float) -> float:
 
 
 def paths(message: Any, prefix: str, fingers: Sequence[int], now: float, *, waited: bool = False) -> List[Path]:
-    """Returns the paths of a trajectory with at least one point. A path begins when the hand gets it. If
-    the stamp is in the future, the caller must therefore wait until then (`begins_in`) before the hand gets the paths:
-    their times count from the stamp. If the stamp has passed, the paths begin now, and the points that have passed are
-    left out.
+    """Returns the paths of a trajectory with at least one point. A path begins when the hand gets it. If the stamp is
+    in the future, the times of the paths count from the stamp, so the caller must wait until the stamp (`begins_in`)
+    before it sends the paths to the hand. If the stamp has passed, the paths begin now, and the points that have passed
+    are left out.
 
     Args:
         message: a trajectory_msgs/JointTrajectory. It names all joints of each finger that it moves.

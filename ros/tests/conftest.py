@@ -24,7 +24,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 #: Longest time of a wait, s. The machine may be busy.
 LONGEST = 30.0
 
-#: The prefix of names with which the node runs.
+#: The parameter `prefix` of the node: the prefix of its joint and frame names.
 PREFIX = "left_"
 
 #: The names of all joints, in the order of the node.
@@ -41,7 +41,7 @@ def trajectory(finger, *points, names=None):
 
 
 def near(finger, angles, tolerance=0.03):
-    """Returns the condition that joint states have a finger near these angles."""
+    """Returns a condition that a JointState fulfils if it shows the finger near these angles, rad."""
 
     def condition(message):
         found = dict(zip(message.name, message.position))
@@ -69,7 +69,7 @@ class Planner:
         subscribe(Log, "/rosout")
         for finger in (1, 2, 3):
             subscribe(WrenchStamped, f"finger{finger}/wrench")
-        #: Number of lines of the log before the last message that was published.
+        #: Number of log lines that had arrived when this planner last published a message.
         self.logged = 0
         self.publishers = []
         self.trajectories = self._publisher(JointTrajectory, "joint_trajectory")

@@ -98,7 +98,7 @@ def test_the_latched_description_is_the_hand(planner):
 
 def test_a_trajectory_moves_a_finger_and_no_other(planner):
     before = planner.wait("joint_states")
-    # The message has the joints in another order, and the present pose as its first point, as planners of ROS send it.
+    # The message has the joints in another order. Its first point is the present pose, as in messages of ROS planners.
     names = [JOINTS[5], JOINTS[3], JOINTS[4]]
     now = dict(zip(before.name, before.position))
     planner.trajectories.publish(
@@ -119,7 +119,7 @@ def test_a_trajectory_beyond_the_limits_is_refused_with_the_reason(planner):
     planner.wait("/rosout", refused("trajectory refused", "finger.motion"))
     planner.trajectories.publish(trajectory(3, (1.0, [0.5]), names=["elbow"]))
     planner.wait("/rosout", refused("there is no joint elbow"))
-    # One finger refuses, so the other one, which accepts its path, holds its pose.
+    # Finger 3 refuses its path. So finger 1 holds its pose, although its own path is within the limits.
     both = trajectory(1, (1.0, [0.0, 0.9, 1.2, 0.0, 0.5, 8.0]), names=[*JOINTS[:3], *JOINTS[6:]])
     planner.trajectories.publish(both)
     planner.wait("/rosout", refused("trajectory refused", "8.000", "finger 3"))

@@ -1,4 +1,4 @@
-"""The description of the package for colcon and rosdep."""
+"""Tests the dependencies in package.xml, which colcon and rosdep read."""
 
 import pathlib
 import re

@@ -1,4 +1,5 @@
-"""What the node publishes at low and at high rates. The hand is a stand-in whose fault a test sets."""
+"""The rates at which the node publishes, and the mean joint rates in its messages. The hand is a stand-in whose fault a
+test sets."""
 
 import pathlib
 import time
@@ -133,6 +134,6 @@ def test_the_rates_are_means_since_the_previous_measurement():
 
     assert (mean(0, 0.0) == noise).all()
     assert mean(10, 0.02) == pytest.approx(2.0 * numpy.ones(3))
-    # No cycle has passed since the previous call, so the measurement and the mean rate are the same.
+    # No cycle has passed since the previous call, so the mean rate of that call is repeated.
     assert mean(10, 0.02) == pytest.approx(2.0 * numpy.ones(3))
     assert mean(20, 0.03) == pytest.approx(1.0 * numpy.ones(3))

@@ -1,4 +1,4 @@
-"""Tests the services of the node with the real rclpy, and the diagnostics after each call of a service."""
+"""Tests services of the node with the real rclpy, and what the diagnostics report when a service is called."""
 
 from conftest import JOINTS, PREFIX, near, refused, trajectory
 

@@ -1,4 +1,4 @@
-"""Trajectories as paths of fingers, without a hand and without nodes."""
+"""Tests of the conversion of trajectories to paths of fingers. They need no hand and no ROS nodes."""
 
 import numpy
 import pytest

@@ -1,4 +1,4 @@
-"""Waiting trajectories, services and times of measurements, without a hand and without nodes."""
+"""Tests services, times of measurements, and trajectories that wait for their start, with a fake hand and node."""
 
 import time
 import types
@@ -133,7 +133,7 @@ def test_if_one_finger_refuses_its_path_the_others_stop(one, refusing, other):
     hand.refusing = refusing
     take(message([1.0]))
     assert hand.calls[-1] == ("position", other) and f"finger {refusing} is faulted" in node.logger.lines[0]
-    # The other finger has got a command, so its part of the trajectory that waits is dropped.
+    # The other finger has got a command, so its part of the waiting trajectory is dropped.
     hand.refusing, hand.calls = 0, []
     node.advance_to(10.0)
     assert hand.calls == [("path", refusing, [1.0])]

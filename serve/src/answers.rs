@@ -104,7 +104,7 @@ impl Answers {
     }
 
     fn put_other(&self, outgoing: Outgoing) {
-        // This queue becomes full only if a client keeps sending queries faster than the server can refuse them. Its
+        // This queue becomes full only if a client keeps sending queries faster than the server can refuse them. Then
         // further queries end here, in the thread that receives them, because the memory of the server is limited.
         let _ = self.others.try_send(outgoing);
     }
@@ -123,7 +123,7 @@ pub fn send(shared: &Shared, session: &Session, queue: &Receiver<Outgoing>) {
     queue.try_iter().take(WAITING).for_each(|outgoing| send_one(shared, session, outgoing));
 }
 
-/// A failure to send needs no reaction: either the client has gone, or the server ends.
+/// Sends a message. A failure needs no reaction: either the client has gone, or the server ends.
 fn send_one(shared: &Shared, session: &Session, outgoing: Outgoing) {
     match outgoing {
         Outgoing::Reply(query, key, bytes, place) => {

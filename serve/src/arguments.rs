@@ -129,7 +129,7 @@ fn server_name(text: &str) -> Result<ClientName, String> {
 }
 
 fn wait(mut signals: Signals) {
-    // The iterator of signals does not end by itself.
+    // The iterator does not end by itself, so `next` returns only when a signal has arrived.
     let _ = signals.forever().next();
 }
 

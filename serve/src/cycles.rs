@@ -1,4 +1,6 @@
-//! Collects the cycles of the fingers for the States that the server publishes: every cycle once, in order.
+//! Collects the cycles of the fingers for the States that the server publishes. The cycles of a finger are taken in
+//! order, and each cycle is taken at most once. If a stopped finger has no new cycles, a record of its newest report is
+//! taken instead.
 
 use crate::goal::Goal;
 use std::sync::Arc;
@@ -243,7 +245,7 @@ mod tests {
         }
     }
 
-    /// A State that is published late can have more cycles than fit into it.
+    /// If a State is published late, there can be more new cycles than fit into it.
     #[test]
     fn every_finger_keeps_its_newest_cycles() {
         let of = |finger, count| (0..count).map(move |cycle| record(finger, cycle));

@@ -1,5 +1,5 @@
 //! Epochs: random numbers that nobody can guess. A client that acquires the hand gets a new epoch, a secret that its
-//! Targets must contain.
+//! Targets (the messages with its set points) must contain.
 
 use crate::ServeError;
 

@@ -75,7 +75,7 @@ pub enum ServeError {
 }
 
 impl ServeError {
-    /// The error for an operation that the system refuses, and that needs a thread or a descriptor.
+    /// The error if the system refuses an operation that needs a thread or a descriptor.
     pub(crate) fn refused(doing: &'static str, error: &io::Error) -> Self {
         Self::System { doing, reason: with_remedy(error) }
     }

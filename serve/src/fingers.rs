@@ -1,6 +1,6 @@
-//! Sends to the fingers of the hand what the owner wants of them: new parts of Targets, the rest of the way to a
-//! destination that is far ahead of a finger, and, when a message of the owner arrives again, the set points of fingers
-//! that were caught (see [`crate::silence`]).
+//! Sends to the fingers of the hand what the owner wants of them: new parts of Targets, and the rest of the way to a
+//! destination that is far ahead of a finger. When the owner's messages resume after a silence, it also sends the set
+//! points of the fingers that were caught meanwhile (see [`crate::silence`]).
 
 mod leading;
 mod preparing;
@@ -44,8 +44,8 @@ impl Fingers {
         &self.goals
     }
 
-    /// Returns the progress of each finger toward where the owner wants it. A finger that is caught, or that has only a
-    /// set point on the way there, has not arrived.
+    /// Returns the progress of each finger toward where the owner wants it. A finger that is caught, or whose set point
+    /// is only an intermediate place on the way, has not arrived.
     #[must_use]
     pub fn progress(&self) -> [Arrival; FINGERS] {
         std::array::from_fn(|index| {
@@ -185,7 +185,7 @@ impl Fingers {
         }
     }
 
-    /// Sends everything that the owner wants of a finger that was caught.
+    /// Sends everything that the owner wants of a finger that was caught. Sends nothing if the owner wants a path.
     fn resume(&mut self, number: i32, report: &FingerReport, valid: Validity) {
         let goal = &mut self.goals[number as usize - 1];
         if let Destination::Path { .. } = goal.destination {
@@ -196,8 +196,8 @@ impl Fingers {
         self.send(number, report, valid, true);
     }
 
-    /// Sends the farthest place on the way to a finger's destination that the lead admits. If `spring` is set, also
-    /// sends the finger's Kx and damping.
+    /// Sends the farthest set point that the bound of the lead (see [`crate::lead`]) admits on the way to a finger's
+    /// destination. If `spring` is set, also sends the finger's Kx and damping.
     fn send(&mut self, number: i32, report: &FingerReport, valid: Validity, spring: bool) {
         let index = number as usize - 1;
         let goal = match spring {

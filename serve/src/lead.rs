@@ -3,7 +3,8 @@
 //! The spring of the fingertip makes the joint torques tau = J^T Kx J (theta_d - theta) (eq. 6 of the report). Because
 //! of tau = J^T f (eq. 1), a force F at the tip gives joint i at most the torque F |J_i|, where J_i is column i of J.
 //! The set point is moved back along the straight line to the finger until |tau_i| <= F |J_i| holds for every joint.
-//! The torques are linear in theta_d - theta, so this multiplies theta_d - theta by one factor.
+//! This multiplies theta_d - theta by one factor. The torques are linear in theta_d - theta, so the factor is the
+//! smallest ratio F |J_i| / |tau_i|, or 1 if no ratio is below 1.
 
 use sun2xp::nalgebra::{Matrix3, Vector3};
 

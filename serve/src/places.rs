@@ -9,11 +9,11 @@ use sun2xp_remote_protocol::ClientName;
 /// Largest number of Requests of one client that may wait.
 const OF_CLIENT: usize = 8;
 
-/// Largest number of gets of the Status that may wait, of all clients together. The Zenoh key of the Status does not
-/// contain the name of a client.
+/// Largest number of queries for the Status that may wait, counted over all clients. The Zenoh key of the Status does
+/// not contain the name of a client.
 const OF_STATUS: usize = 64;
 
-/// The number of waiting queries of each client. The entry without a name counts the waiting gets of the Status.
+/// The number of waiting queries of each client. The entry without a name counts the queries for the Status.
 type Counts = BTreeMap<Option<ClientName>, usize>;
 
 /// The places of all waiting queries.
@@ -27,8 +27,8 @@ pub struct Place {
 }
 
 impl Places {
-    /// Returns a place for a Request of client `of`. If `of` is none, returns a place for a get of the Status. Returns
-    /// none if all places are taken.
+    /// Returns a place for a Request of client `of`. If `of` is none, returns a place for a query for the Status.
+    /// Returns none if all places are taken.
     #[must_use]
     pub fn take(&self, of: Option<ClientName>) -> Option<Place> {
         let most = if of.is_some() { OF_CLIENT } else { OF_STATUS };

@@ -142,7 +142,7 @@ fn look(shared: &Shared) {
     }
 }
 
-/// Takes a Target. The set points are in the mailboxes of the fingers when this returns.
+/// Takes a Target. If it is applied, its set points are in the mailboxes of the fingers when this function returns.
 fn on_target(shared: &Shared, answers: &Answers, sample: &Sample) {
     let Some(client) = shared.keys.client_of_target(sample.key_expr().as_str()) else { return };
     let time = now();

@@ -25,7 +25,7 @@ pub enum Permission {
     Read,
     /// Also own and command the hand.
     Command,
-    /// At a router: offer the hand with this name.
+    /// At a router: offer the hand whose name is the client's name.
     Hand,
 }
 

@@ -9,7 +9,7 @@ use sun2xp::motion::Validity;
 /// A millisecond, ns.
 pub const MILLISECOND: u64 = 1_000_000;
 
-/// How long the owner has been silent.
+/// The moment from which the owner's silence counts, and how long the owner may be silent.
 #[derive(Clone, Copy, Debug)]
 pub struct Silence {
     /// The moment from which the validity of the newest Target counts, ns.
@@ -21,7 +21,7 @@ pub struct Silence {
 }
 
 impl Silence {
-    /// Returns the silence after an acquire at `now`, ns, which counts as a Target with the validity `catch_ms`.
+    /// Returns the silence after an acquire at `now`, ns. The acquire counts as a Target with the validity `catch_ms`.
     #[must_use]
     pub fn after_acquire(now: u64, catch_ms: u32, end_ms: u32) -> Self {
         let nanoseconds = |milliseconds| u64::from(milliseconds) * MILLISECOND;

@@ -28,7 +28,7 @@ fn connect(rig: &Rig, name: &str, folder: &Path, certificate: &str) -> Result<Cl
 }
 
 #[test]
-fn a_client_uses_only_the_keys_of_its_certificate() {
+fn a_client_may_use_only_the_zenoh_keys_of_the_name_in_its_certificate() {
     let folder = tempfile::tempdir().expect("a folder");
     certificates(folder.path(), &["alice", "bob", "carol", "mallory"]);
     let rig = rig(folder.path());

@@ -36,8 +36,9 @@ fn follows(name: NamedHand, near: f64) {
     rig.server.end();
 }
 
-/// Moves finger 1 and falls silent on its way. Until its end state, the finger must hold the place where it was caught.
-/// `near` is the largest permitted motion of a joint meanwhile, rad.
+/// Moves finger 1. On the way the client falls silent, and the finger is caught: it holds its pose softly, because its
+/// Target is too old. The finger must hold this pose until its end state. `near` is the largest permitted motion of a
+/// joint in this time, rad.
 fn is_caught(name: NamedHand, near: f64) {
     let rig = Rig::named(name, "");
     let mut alice = rig.connect("alice");
@@ -73,8 +74,8 @@ fn a_sheathed_hand_follows_its_owner_and_is_caught() {
     is_caught(NamedHand::Sheathed, 0.03);
 }
 
-/// The errors of the gauges of this hand act like a force of 0.3 N at the tip. This force moves the tip by 1 mm with
-/// the default Kx of 3 N/cm, and by 3 mm with the soft Kx of 1 N/cm of a catch.
+/// The gauge errors of this hand act like a force of 0.3 N at the tip. This force moves the tip by 1 mm with the
+/// default Kx of 3 N/cm, and by 3 mm while the finger is caught, with the soft Kx of 1 N/cm.
 #[test]
 fn a_cheap_hand_follows_its_owner_and_is_caught() {
     follows(NamedHand::Cheap, 0.12);

@@ -1,4 +1,5 @@
-//! One writer: acquire, release, take-over, and the Targets of those who do not own the hand.
+//! Tests the ownership of a hand: who may acquire, release, take over and stop it, and which Requests and Targets the
+//! server refuses.
 
 mod common;
 

@@ -20,7 +20,7 @@ fn joints(rig: &Rig, finger: i32) -> [f64; 3] {
 }
 
 #[test]
-fn every_command_arrives() {
+fn commands_arrive() {
     let rig = Rig::new("end_ms = 20000");
     let hand = open(&rig, "alice");
     let place = [0.1, 0.5, 0.9];

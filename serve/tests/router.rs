@@ -1,4 +1,5 @@
-//! Several hands behind a router: clients find them, and each hand offers only what is below its own name.
+//! Clients find and command several hands behind a router. The router lets a hand offer only the keys below the name in
+//! its certificate.
 
 mod common;
 

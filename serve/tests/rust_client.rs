@@ -11,8 +11,9 @@ use sun2xp_remote_client::{
 };
 use sun2xp_serve::certificates::{Wanted, make};
 
-/// Long time limits, because the machine may be busy: for the silence of the owner, and for the age of positions.
+/// Time limits for the silence of the owner. They and [`STALE_MS`] are long, because the machine may be busy.
 const PATIENT: &str = "catch_ms = 5000\nend_ms = 20000\n";
+/// Largest age of a position, ms.
 const STALE_MS: u32 = 4000;
 
 /// The number of the event *settled*.

@@ -74,8 +74,8 @@ pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
 }
 
 /// Returns the time by which a TactileRequest prolongs an exchange, us: the time of its answer, which follows the
-/// Replies. The request itself adds no time. It follows the Commands, and is sent while the first Reply, which is
-/// longer, is received.
+/// Replies. The request itself adds no time. It follows the Commands, and is sent before the Replies end, because a
+/// Command and a TactileRequest together are shorter than a Reply.
 pub fn tactile_microseconds(baud: u32) -> f64 {
     Kind::TactileEvent.wire_length() as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6
 }

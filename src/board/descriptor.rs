@@ -110,7 +110,7 @@ fn lowest() -> RawFd {
     let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
     // SAFETY: `limit` is writable. If the call fails, `limit` stays 0, and this function returns 0.
     unsafe { libc::getrlimit(libc::RLIMIT_NOFILE, &mut limit) };
-    // The soft limit of most systems is 1024.
+    // On most systems the soft limit is 1024, so the share is above `LOWEST`.
     let share = limit.rlim_cur / SHARE_OF_LIMIT.1 * SHARE_OF_LIMIT.0;
     RawFd::try_from(share).map_or(LOWEST, |share| share.min(LOWEST))
 }
@@ -150,7 +150,7 @@ mod tests {
         unsafe { libc::close(ALONE) };
         assert!(!descriptor.is_own());
         assert_eq!(descriptor.error().raw_os_error(), Some(libc::EBADF));
-        // This file has the same device and inode.
+        // This file has the same device and inode as the closed one.
         let other = File::open("/dev/null").expect("open");
         // SAFETY: the first number is open, and the second is open or free.
         assert_eq!(unsafe { libc::dup2(other.as_raw_fd(), ALONE) }, ALONE);

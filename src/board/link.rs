@@ -28,8 +28,8 @@ pub struct LinkCounters {
     pub damaged: u64,
     /// Undamaged frames that were not expected, or that this library cannot read.
     pub foreign: u64,
-    /// Writes that the port accepted only in part or not at all. The last frame that the board received may be
-    /// damaged, and later ones are missing.
+    /// Writes that the port accepted only in part or not at all. The last frame of such a write that reaches the board
+    /// may be damaged, and the later frames of the write are missing.
     pub unsent: u64,
 }
 
@@ -74,6 +74,7 @@ pub struct Link<T = Port> {
     cut_short: bool,
     /// The next frame needs a delimiter in front, because it follows an incomplete frame or the noise of plugging in.
     delimit_first: bool,
+    /// The relayed request: a handshake request that this link sends for the thread that repairs the port.
     relayed: RelayedRequest,
     handshake_sequence: u8,
     read_at: u64,

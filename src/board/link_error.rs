@@ -105,7 +105,8 @@ impl LinkError {
             LinkError::WrongVersion { lowest, highest } => {
                 format!("the board has protocol {lowest} to {highest}, the library {VERSION}: update the older one")
             }
-            // A search for boards sends only Hello, which every board must answer.
+            // A search for boards sends only Hello, which every board must answer. Only faulty firmware, or several
+            // boards at the port, can therefore cause the other errors.
             _ => "faulty firmware, or several boards: update firmware, or connect only one board".into(),
         }
     }

@@ -30,9 +30,9 @@ pub struct Port {
     path: PathBuf,
     /// When the port last became readable, ns.
     ready_at: u64,
-    /// The process that opened the port. A forked child inherits this value and the open file.
+    /// The process that opened the port. A forked child inherits this `Port` and the open file.
     process: u32,
-    /// Whether this value has locked the port. If it has not, another program may be using the port.
+    /// Whether this `Port` has locked the serial port. If it has not, another program may be using the port.
     locked: bool,
 }
 
@@ -58,7 +58,7 @@ impl Port {
         if self.descriptor.is_own() { Ok(()) } else { Err(PortError::Closed) }
     }
 
-    /// Waits until a read may return bytes or the end of the port. Returns false at the deadline.
+    /// Waits until a read may return bytes, or may find that the port has vanished. Returns false at the deadline.
     fn wait_for_input(&mut self, deadline: u64) -> Result<bool, PortError> {
         while !self.unread {
             let left = Duration::from_nanos(deadline.saturating_sub(realtime::now()));

@@ -112,8 +112,9 @@ impl PortError {
         }
     }
 
-    /// Returns the errno of the error: that of the system, with two exceptions. If the device of an open port
-    /// disappears, errno is EIO, whatever the driver reports. If the path is a folder, errno is ENOTTY, not EISDIR.
+    /// Returns the errno of the error. If the description of the variant names an errno, it is this one, whatever the
+    /// system reported. For example, errno is EIO if the device of an open port disappears, and ENOTTY, not EISDIR, if
+    /// the path is a folder. The other variants keep the errno of the system, or have EIO if there is none.
     pub fn errno(&self) -> i32 {
         match self {
             PortError::Missing(_) => libc::ENOENT,

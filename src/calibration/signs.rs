@@ -26,7 +26,7 @@ use wiring::Wiring;
 const HOLD: f64 = 150.0;
 /// Damping of a held motor, N s/cm.
 const DAMPING: f64 = 2.0;
-/// Largest pull of a held motor, in multiples of t_min.
+/// Largest pull of a held motor, in multiples of t_min (`tendon.minimum`).
 const STRONGEST_HOLD: f64 = 1.2;
 /// Corner frequency of the speed filter, rad/s.
 const SPEED_CORNER: f64 = 1000.0;

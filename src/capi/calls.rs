@@ -50,7 +50,7 @@ use std::ffi::{c_char, c_int};
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
     delegated("OpenHand", default_handle(), MEMORY_OF_HAND, || {
-        // The work runs in another thread.
+        // `in_callback` examines the calling thread, but the returned function runs in another thread.
         let in_callback = in_callback();
         Ok(move || hand_table::open_default(loaded_hand::open, in_callback))
     })

@@ -1,6 +1,6 @@
 //! The exported functions for refused calls. Their doc comments are the C manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_camel_case_types)]
 
 use crate::capi::boundary::uncancelled;

@@ -115,7 +115,8 @@ pub fn of_hand(error: &HandError) -> c_int {
     }
 }
 
-/// The number of an error whose type has several reasons. The errno of the error determines the number.
+/// The number of an error whose type has variants with different numbers. The errno of the error determines the
+/// number.
 fn by_errno(errno: c_int) -> c_int {
     match errno {
         libc::ERANGE | libc::EDOM => SUN2XP_ERROR_LIMIT,
@@ -141,7 +142,7 @@ mod tests {
         assert_eq!(number(&Refusal::NoHand), SUN2XP_ERROR_NO_HAND);
     }
 
-    /// The comment of SUN2XP_ERROR_PORT describes the stalled servo.
+    /// The manual says at SUN2XP_ERROR_PORT that a refusal because of a stalled servo has this number.
     #[test]
     fn a_recovery_has_the_number_of_ports_unless_the_servo_has_failed() {
         let of = |error: RecoveryError| number(&Refusal::Hand(error.into()));

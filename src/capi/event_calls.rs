@@ -253,7 +253,8 @@ impl Taken {
     }
 }
 
-/// Converts an event. In a result, `size` belongs to the caller and is not copied.
+/// Converts an event. A callback receives this `size`. [`fill_next`] does not copy it, because the `size` of a result
+/// belongs to the caller.
 fn to_c(event: &events::Event, lost: u64) -> sun2xp_event {
     sun2xp_event {
         size: size_of::<sun2xp_event>(),

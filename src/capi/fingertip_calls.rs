@@ -139,7 +139,7 @@ pub unsafe extern "C" fn sun2xp_send_contact(
 ) -> c_int {
     let hand = Handle::of(hand);
     guarded("sun2xp_send_contact", hand, || {
-        // `stiffness` is checked before `dimensions`, which determines its size.
+        // `dimensions`, which determines the size of the matrix, is checked later. So this error names no size.
         non_null(stiffness, "stiffness", Wanted::Matrix)?;
         // SAFETY: here and below, by the contract in the manual, the pointer is null or points to the array that the
         // manual describes for this value of `dimensions`.

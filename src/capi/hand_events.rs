@@ -18,7 +18,7 @@ pub(super) struct HandEvents {
     queue: RwLock<Option<(Handle, Arc<EventQueue>)>>,
     /// The callback of the open hand.
     listener: Mutex<Option<Listener>>,
-    /// Locked while the planner's callback runs. The exit handler waits for it.
+    /// Locked while the planner's callback runs. The exit handler waits for this lock.
     calling: Mutex<()>,
     /// The mark [`Listener::removed`] of the callback that runs.
     running: Mutex<Option<Arc<AtomicBool>>>,

@@ -249,11 +249,11 @@ pub unsafe extern "C" fn sun2xp_set_gravity(hand: *mut sun2xp_hand, gravity: *co
     })
 }
 
-/// Converts an array of three numbers to another such array. The arguments `from` and `to` are the pointers with their
-/// names.
+/// Converts an array of three numbers to another such array. Each pointer comes with the name of its argument in the
+/// exported call.
 ///
 /// # Safety
-/// Both pointers are null or point to three numbers.
+/// Each pointer is null or points to three numbers.
 unsafe fn convert(
     hand: Handle,
     (from, from_name): (*const f64, &'static str),

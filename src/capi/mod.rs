@@ -2,11 +2,11 @@
 //! catches panics and converts refusals to numbers and errno; the hand makes all other checks. `include/Sun2Xp.h` and
 //! `include/sun2xp.h` are generated from the files that `tests/header/main.rs` lists.
 //!
-//! If several reasons apply to a call, it reports the first one in this order: forked child (EPERM), null pointer
-//! (EFAULT), exiting process (ESHUTDOWN), no hand (ENODEV), a struct whose size is too small (EINVAL), then the reasons
-//! that the hand finds: finger number, numbers that are not finite, symmetry and eigenvalues, limits, faulted finger.
-//! The lists in the manual have the same order, without ESHUTDOWN. A slow call checks for free memory (ENOMEM) after
-//! the check for a forked child. The manual names the exceptions.
+//! If several reasons to refuse a call apply, the call reports the first one in this order: forked child (EPERM), null
+//! pointer (EFAULT), exiting process (ESHUTDOWN), no hand (ENODEV), a struct whose size is too small (EINVAL), then the
+//! reasons that the hand finds: finger number, numbers that are not finite, symmetry and eigenvalues, limits, faulted
+//! finger. The lists in the manual have the same order, without ESHUTDOWN. A slow call checks for free memory (ENOMEM)
+//! after the check for a forked child. The manual names the exceptions.
 
 // A C interface needs raw pointers.
 #![allow(unsafe_code)]

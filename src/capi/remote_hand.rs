@@ -1,5 +1,6 @@
-//! A hand on another machine, as the C calls use it. The package `remote/library` implements it over the network.
-//! libsun2xp implements it by passing the calls on to that package's library ([`crate::capi::loaded_hand`]).
+//! The trait [`RemoteHand`], through which the C calls use a hand on another machine. The package `remote/library`
+//! implements this trait over the network. libsun2xp implements it by passing the calls on to that package's library
+//! ([`crate::capi::loaded_hand`]).
 
 use crate::calibration::Task;
 use crate::capi::event_struct::sun2xp_event;

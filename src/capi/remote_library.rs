@@ -24,7 +24,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 type Hand = *mut sun2xp_hand;
 
-/// Declares the functions of the other library that this library calls.
+/// Declares the functions of libsun2xp_remote.so that libsun2xp calls.
 macro_rules! functions {
     ($($name:ident: $type:ty;)*) => {
         /// The functions of the loaded library, with the types of `sun2xp.h`.
@@ -89,7 +89,7 @@ pub(super) fn loaded() -> Option<&'static RemoteLibrary> {
     LOADED.get()
 }
 
-/// The file of the library, with the ABI number.
+/// The file name of libsun2xp_remote.so, which ends with the ABI number.
 fn file_name() -> String {
     format!("libsun2xp_remote.so.{SUN2XP_ABI_VERSION}")
 }

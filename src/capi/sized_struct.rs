@@ -85,8 +85,8 @@ impl<T: Copy> SizedStruct<T> {
     unsafe fn write(self, value: T) {
         let rest = self.size - size_of::<T>();
         let size_member = size_of::<usize>();
-        // SAFETY: the contracts of this function and of `new`: there are `size` bytes, which are not fewer than those
-        // of the value, and the value begins with its size.
+        // SAFETY: the contracts of this function and of `new`: the memory has `size` bytes, at least as many as `T`,
+        // and `T` begins with the member `size`.
         unsafe {
             let from = (&raw const value).cast::<u8>().add(size_member);
             let to = self.place.cast::<u8>();

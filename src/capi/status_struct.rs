@@ -33,8 +33,8 @@ pub const SUN2XP_STATE_CLOSED: c_int = 6;
 /// cover the cycles since sun2xp_open or the last sun2xp_reset_timing. The member torque_scale applies to
 /// all joints alike, so the torque keeps its direction. The member stiffness_scale is below 1 in poses in
 /// which the tendons cannot provide the whole Kx, for example near the straight pose. A joint beyond its
-/// limit can reduce it too, because the spring that pushes the joint back needs a part of what the tendons
-/// provide. sun2xp_tip gives the stiffness that results.
+/// limit can also reduce stiffness_scale, because the spring that pushes the joint back needs a part of what
+/// the tendons provide. sun2xp_tip gives the stiffness that results.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct sun2xp_status {

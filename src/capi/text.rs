@@ -4,7 +4,7 @@ use crate::model::OneLine;
 use std::ffi::c_char;
 use std::fmt::{self, Write};
 
-/// One line of text, terminated by a zero byte. Longer texts are truncated.
+/// One line of text, terminated by a zero byte. A text of more than `CAPACITY` - 1 bytes is truncated.
 pub(super) struct Text<const CAPACITY: usize> {
     bytes: [u8; CAPACITY],
     /// Length of the text, bytes, without the zero byte.

@@ -33,12 +33,12 @@ const KEYS: &[(&str, Reset)] = keys![
     geometry.motor_radius,
 ];
 
-/// Returns the refusal of a finger's configuration with the key to correct. `constructs` returns whether a controller
-/// can be constructed for a finger.
+/// Returns `refusal`, changed so that it names the key to correct. `constructs` returns whether a controller can be
+/// constructed for a finger.
 ///
 /// A refusal names the key at which the construction has ended, but the cause may be the value of another key. The key
-/// to correct is the one whose default value permits a controller while all other values stay. The key that the refusal
-/// names has precedence. If no such key exists, the refusal is unchanged.
+/// to correct is the one whose default value permits a controller while all other values stay. If there are several
+/// such keys, the key that the refusal names has precedence. If there is none, the refusal is unchanged.
 pub(super) fn with_culprit(
     refusal: Unusable,
     finger: &ConfiguredFinger,

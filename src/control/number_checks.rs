@@ -1,4 +1,4 @@
-//! Checks of single numbers that several parts of the controller need.
+//! Checks single numbers, for example those of the configuration. Several parts of the controller use these checks.
 
 use crate::model::configuration::Unusable;
 

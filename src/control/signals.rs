@@ -92,9 +92,9 @@ pub enum Activity {
     /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints stay
     /// where they are.
     TakeUpSlack,
-    /// Brings every tendon to the pretension of [`Activity::TakeUpSlack`], without gravity compensation. The joints are
-    /// held where they are when the last tendon comes taut. The given values, N, are the errors of the gauges (shown
-    /// minus true tension). For calibration.
+    /// Brings every tendon to the pretension of [`Activity::TakeUpSlack`], without gravity compensation. Once all
+    /// tendons are taut at the same time, the joints are held at the angles of that moment. The given values, N, are
+    /// the errors of the gauges (shown minus true tension). For calibration.
     Tighten(Vector4<f64>),
     /// Makes the fingertip the spring of this set point.
     Follow(SetPoint),

@@ -19,8 +19,8 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
-/// Returns the remedy for an error in writing a file. The caller appends the remedy to the text of the error, so it
-/// begins with a full stop and a space. The remedy is empty unless permission is missing or the file system is
+/// Returns the remedy for an error in writing a file. The remedy begins with a full stop and a space, because the
+/// caller appends it to the text of the error. The remedy is empty unless permission is missing or the file system is
 /// read-only. The texts of other errors already show what to change, for example that the disk is full.
 pub fn write_remedy(error: &Error) -> &'static str {
     match error.kind() {

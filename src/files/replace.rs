@@ -146,7 +146,7 @@ impl NewFile {
 impl Drop for NewFile {
     fn drop(&mut self) {
         if !self.placed {
-            // If the file cannot be removed, it stays behind. No other remedy exists.
+            // The error is ignored: a file that cannot be removed stays behind.
             let _ = fs::remove_file(&self.path);
         }
     }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 /// The data that a servo computes with and that a planner can change while the servo runs.
 #[derive(Clone, Debug)]
 pub struct Adjustable {
-    /// Number of the controller in the finger's black box.
+    /// Number of the controller. The records in the finger's black box name their controller by this number.
     pub number: u32,
     /// The controller, which contains the blocks of Figure 9 of COINS TR 90-48.
     pub controller: Controller,

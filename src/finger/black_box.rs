@@ -47,8 +47,9 @@ pub struct BlackBox {
     /// Number of the controller that the servo will use when a calibration begins. The source of this controller is
     /// kept although no record names the controller yet.
     awaited: Option<u32>,
-    /// The servo holds this controller or a newer one. After a calibration it resumes this controller. If the
-    /// calibration was longer than the kept records, no record names the controller any more, but its source is needed.
+    /// Number of the newest controller that the servo was known to have at the last announcement. After a calibration
+    /// the servo resumes this controller or a newer one. If the calibration was longer than the kept records, no record
+    /// names the controller any more, but its source is needed.
     held: u32,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,
@@ -99,7 +100,8 @@ impl BlackBox {
     /// Stores the source of the next controller. The caller must do this before it collects a record that names the
     /// controller. `taken` is [`FingerReport::controller`](crate::finger::FingerReport::controller), read before the
     /// last [`BlackBox::collect`]. Controllers older than `taken` that no record names are removed: either the servo
-    /// never used them, or the records of their cycles are no longer kept.
+    /// never used them, or the records of their cycles are no longer kept. The controller that is announced for a
+    /// calibration is not removed, nor are those that telemetry still has to publish.
     pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();

@@ -32,7 +32,7 @@ pub struct CycleRecord<S = Stage> {
 pub struct ControlRecord {
     /// Number of the controller.
     pub controller: u32,
-    /// Number of the controller that this one replaced in this cycle; otherwise its own number.
+    /// Number of the controller that this controller replaced in this cycle; its own number if it replaced none.
     pub previous: u32,
     /// Input of the controller.
     pub input: ControlInput,

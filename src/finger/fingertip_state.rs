@@ -78,7 +78,7 @@ mod tests {
             let found = inverse.tr_mul(&jacobian.tr_mul(&force));
             assert!(felt == 3 && (found - force).amax() < 1e-9, "{degrees:?}: {found}");
         }
-        // In the straight pose, a force along the finger is not felt, and any other force is.
+        // In the straight pose and near it, a force along the finger is not felt. Forces across the finger are felt.
         for degrees in [[0.0, 0.0, 0.0], [0.0, 0.0, 5.0]] {
             let jacobian = pose(degrees);
             let (inverse, felt) = felt_inverse(&jacobian);

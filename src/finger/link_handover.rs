@@ -32,7 +32,7 @@ pub struct RepairedLink<T> {
 pub struct RestoredBoard {
     /// The confirmation of the board.
     pub configured: Configured,
-    /// The numbers of requests to stop and of faults before the recovery began.
+    /// How many requests to stop and how many faults there had been before the recovery began.
     pub stops: StopCounts,
     /// Number of restarts of the board that recoveries have detected since open. A recovery looks for a restart only if
     /// the board loses its zeros or the readings of tactile elements at a restart. For other boards the number is 0.

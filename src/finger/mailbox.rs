@@ -1,10 +1,10 @@
 //! The exchange between planners and one finger's servo. Set points go to the servo, reports to the planners, and
 //! neither side waits for the other.
 //!
-//! Both directions use wait-free triple buffers of whole values. A lock without priority inheritance would let a
-//! planner stop a servo. A receiver of a channel may have to wait for a sender that was preempted. A lock
-//! exists only among the planners. The set points of groups are in a ring instead, because each group must take
-//! effect in all of its fingers, even if a newer set point follows.
+//! Both directions use wait-free triple buffers of whole values. The set points of groups are in a ring instead,
+//! because each group must take effect in all of its fingers, even if a newer set point follows. The two sides share no
+//! lock and no channel: a lock without priority inheritance would let a planner stop a servo, and the receiver of a
+//! channel may have to wait for a sender that was preempted. Only the planners share a lock.
 
 mod adjustments;
 pub(super) mod groups;

@@ -30,8 +30,8 @@ pub enum AfterExpiry {
 }
 
 impl MotionSettings {
-    /// Returns two times that count from the beginning of this validity, s: until the set point or path expires, and
-    /// until the finger faults. Each of them is infinite if there is no limit.
+    /// Returns when the set point or path expires, and when the finger faults. Both times count from the beginning of
+    /// this validity, s. Each of them is infinite if there is no limit.
     pub fn times(&self, validity: &Validity) -> (f64, f64) {
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let hold = seconds(validity.hold_after).or(self.valid).unwrap_or(f64::INFINITY);

@@ -39,7 +39,8 @@ impl PathBuffer {
         Self { number: 0, origin: 0, begin: None, pieces, piece_count: 1, stiffness, stiffness_count: 0 }
     }
 
-    /// Replaces the path. Entries beyond the largest numbers are ignored; the caller must have refused such a path.
+    /// Replaces the path. Pieces beyond [`MOST_PIECES`] and stiffnesses beyond [`MOST_POSES`] are ignored; the caller
+    /// must have refused a path that has more.
     pub fn fill(&mut self, number: u32, origin: u64, begin: Option<Matrix6<f64>>, path: &PathTable) {
         (self.number, self.origin, self.begin) = (number, origin, begin);
         self.piece_count = path.pieces.len().min(MOST_PIECES);

@@ -2,9 +2,9 @@
 //!
 //! The servo sends at most one relayed request in a period, after the Commands, so the boards answer it after the
 //! Replies of that period. The finger of the request gets no Command, which leaves room for the answer. The longest
-//! answer, Configured, has 38 bytes more than a Reply. It may end after the first Command of the next period, and then
-//! delays the Replies of that period. They still arrive in time, because the recovering finger does not use its part of
-//! that period.
+//! answer, Configured, has 38 bytes more than a Reply. The board may still be sending it when the first Command of the
+//! next period arrives. The Replies of that next period are then delayed. They still arrive in time, because the
+//! recovering finger does not use its part of the period.
 
 use crate::board::protocol::{Decoder, MAX_WIRE, Message, WireFrame};
 use crate::board::{PortError, Transport};

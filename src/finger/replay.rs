@@ -40,7 +40,7 @@ pub struct Difference {
 /// The reason why a recording cannot be replayed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotReplayable {
-    /// The hand's configuration, or a number in the data that all cycles start from, is invalid.
+    /// A value in `Recording::origin` is invalid, for example in the hand's configuration.
     #[error("line 1: {key}: {reason}. {ALTERED}")]
     Origin {
         /// The key, with dots.

@@ -73,8 +73,8 @@ impl SentSetPoint {
     }
 
     /// Prepares the next change. If a new spring phase has begun since the last change, the next change starts from the
-    /// set point that the servo holds. If the last change was sent while an earlier set point expired, the servo will
-    /// still follow the last change, so the next change starts from there.
+    /// set point that the servo holds. There is one exception: if the last change was sent while an earlier set point
+    /// expired, the servo will still follow the last change, so the next change starts from the last change.
     pub fn begin_with(&mut self, report: &FingerReport) {
         if report.springs == self.spring {
             return;
@@ -96,7 +96,8 @@ impl SentSetPoint {
         self.planned = self.number;
     }
 
-    /// Notes what a correction by the library replaces.
+    /// Notes what a correction by the library replaces. The library may have to correct the last set point when the
+    /// limits of the finger change.
     pub fn correct(&mut self, replaced: Replaced) {
         match (replaced, &mut self.path) {
             (Replaced::Place, path) => *path = None,

@@ -93,7 +93,7 @@ pub struct FingerServo {
     /// joint angles of this set point are not used.
     initial: SetPoint,
     end_state: EndState,
-    /// The memory that the finger uses outside this value.
+    /// The memory outside this struct that the servo accesses.
     memory: LockedMemory,
 }
 
@@ -129,7 +129,7 @@ impl FingerServo {
         self.touch.elements()
     }
 
-    /// Returns the memory that the servo accesses outside this value.
+    /// Returns the memory outside this struct that the servo accesses.
     pub fn memory(&self) -> &LockedMemory {
         &self.memory
     }
@@ -225,8 +225,8 @@ impl FingerServo {
     }
 
     /// Publishes the timing, the record and the report of this cycle. The report comes after the record, so that a
-    /// planner that has read the report of a cycle finds its record, unless the black box holds the record back until
-    /// an earlier fault is reported (`BlackBox::wait_at_faults`).
+    /// planner that has read the report of a cycle also finds the record of that cycle. The exception is a record that
+    /// the black box holds back until an earlier fault is reported (`BlackBox::wait_at_faults`).
     pub fn publish(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         if let Some(record) = self.record.take() {

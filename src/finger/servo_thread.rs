@@ -157,7 +157,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     fn confirm_stops(&mut self) {
         self.send_stops();
         for port in self.ports.iter_mut() {
-            // The boards of a released link were stopped before it was released.
+            // Without a link, the port is being repaired. Its boards were stopped before the link was released.
             let Some(link) = &mut port.link else { continue };
             for finger in port.fingers.iter() {
                 let deadline = self.clock.now() + CONFIRMATION;

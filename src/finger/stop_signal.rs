@@ -23,8 +23,8 @@ pub fn stop_calls() -> u32 {
     CALLS.load(Ordering::SeqCst)
 }
 
-/// The numbers of requests to stop and of faults before a recovery began. The recovery answers these, and no later
-/// ones.
+/// How many requests to stop and how many faults there had been before a recovery began. The recovery clears these
+/// requests and faults, but no later ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StopCounts {
     /// Number of emergency stop calls ([`stop_calls`]).

@@ -94,7 +94,8 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     };
     let mut admitted = SetPoint { joints, stiffness, joint_spring, ..sent };
     let stiffest = ahead.and_then(|path| path.stiffest);
-    // A lower bound ends the change of Kx along a path. Then only the Kx of the end of the path counts.
+    // If the stiffness bound is lowered, the change of Kx along a path ends, and only the Kx of the end of the path
+    // counts.
     let softened = stiffest.is_some() && changed.stiffness_bound < admission.stiffness_bound;
     if let Some(stiffest) = stiffest.filter(|_| !softened) {
         let mut along = SetPoint { stiffness: stiffest, ..admitted };

@@ -76,7 +76,7 @@ pub fn find_boards(configuration: &mut Configuration, fingers: Fingers) -> Resul
         match found {
             Ok(paths) => {
                 for ((finger, _), path) in missing.iter().zip(paths) {
-                    // A path that is not UTF-8 cannot be configured. Paths below /dev are ASCII.
+                    // The configuration has paths in UTF-8. Paths below /dev are ASCII, so this conversion keeps them.
                     configuration.fingers[finger.index()].port = path.to_string_lossy().into_owned();
                 }
                 // This check refuses fingers at the same port with different threads or bit rates.
@@ -174,7 +174,7 @@ fn matching(pattern: &Path) -> Vec<PathBuf> {
         return vec![pattern.to_owned()];
     }
     let folder = pattern.parent().unwrap_or(Path::new("."));
-    // A folder that does not exist has no ports. udev removes /dev/serial with the last adapter.
+    // A folder that does not exist has no ports. udev removes /dev/serial when the last adapter is unplugged.
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let fitting = entries.filter(|entry| fits(&entry.file_name().to_string_lossy(), &name));
     let mut paths: Vec<PathBuf> = fitting.map(|entry| entry.path()).collect();

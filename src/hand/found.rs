@@ -1,5 +1,6 @@
-//! Results of calibrations, or of the search for a bound of Kx, for one finger. They are keys of the configuration with
-//! the values that were found, and the part of the configuration on which these values depend.
+//! Results of calibrations, or of the search for a bound of Kx, for one finger. The results are keys of the
+//! configuration with the values that were found. The part of the configuration on which these values depend is kept
+//! with them.
 
 use crate::calibration::Findings;
 use crate::hand::configuration_file::{FingersWithIo, to_document};
@@ -75,7 +76,7 @@ pub(super) enum Numbers {
     Rows(Vec<Vec<f64>>),
     /// A real number.
     One(f64),
-    /// Signs for the real numbers in the file, whose magnitudes were not measured.
+    /// Only signs. The real numbers in the file get these signs and keep their magnitudes, which were not measured.
     SignsOf([i8; 4]),
 }
 
@@ -251,7 +252,7 @@ fn shown(value: &Value) -> String {
 /// Rounds to [`DIGITS`] significant digits.
 pub(super) fn rounded(value: f64) -> Value {
     let digits = DIGITS - 1;
-    // The text of a finite number can be parsed.
+    // Rust can parse every number that it prints, so `unwrap_or` never returns the unrounded value.
     Value::Float(Formatted::new(format!("{value:.digits$e}").parse().unwrap_or(value)))
 }
 

@@ -142,8 +142,8 @@ pub(super) fn reach(
             port: ServedPort::new(link, servos).with_handover(handover).with_requests(requests),
         });
         // Hardware that the program itself drives (`FingerIo`) has no port that could be reopened: it starts again when
-        // a recovery is requested. The port of a simulated board is not reopened. After the port is lost, the system
-        // may use its path for a pseudo-terminal that the planner opens.
+        // a recovery is requested. The port of a simulated board is not reopened, because after its loss the system may
+        // use its path for a pseudo-terminal that the planner opens.
         let reconnects = |&number: &FingerNumber| {
             let finger = &configuration.fingers[number.index()];
             finger.reconnect && !finger.has_io() && simulated.path(number).is_none()

@@ -39,7 +39,7 @@ impl Hand {
     /// A later path, or a later desired pose, replaces the path without a jump. A Kx that is sent while the path runs
     /// takes effect at once, and the path no longer changes Kx.
     ///
-    /// `valid` is how long the path stays valid after its end; none for the configured time.
+    /// `valid` is how long the path stays valid after its end. With `None`, this is the configured time.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if the finger is faulted or is not a spring, if the path is refused

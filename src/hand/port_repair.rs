@@ -172,7 +172,7 @@ impl PortRepair {
 
     /// Must be called after the servo has released the link. If a finger was given to the servo and the servo has not
     /// taken it, subtracts the repair of this finger from its count: the servo discards the finger, and the repair of
-    /// the link replaces its handshake. `repairs` has the counts in the order of the boards.
+    /// the link repeats the handshake of this finger. `repairs` has the counts in the order of the boards.
     pub fn discard_given(&mut self, repairs: &[AtomicU32; FINGERS]) {
         if let Some(place) = self.given.take().filter(|_| !self.is_taken()) {
             repairs[place].fetch_sub(1, Ordering::Release);

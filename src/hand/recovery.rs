@@ -40,11 +40,11 @@ struct Task {
     /// Place of the finger among those of the port.
     place: usize,
     port: Arc<RepairablePort>,
-    /// Number of recoveries of every finger of the port at the beginning.
+    /// For every finger of the port, the number of its recoveries when this recovery began.
     recoveries: [u32; FINGERS],
-    /// For every finger of the port, the numbers of requests to stop that were made before the beginning.
+    /// For every finger of the port, the numbers of requests to stop and of faults before this recovery began.
     stops: [StopCounts; FINGERS],
-    /// Whether another finger of the port was not faulted at the beginning.
+    /// Whether another finger of the port was not faulted when this recovery began.
     beside_others: bool,
 }
 

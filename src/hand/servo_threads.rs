@@ -31,8 +31,8 @@ pub(super) struct RealtimeState {
     pub core: bool,
 }
 
-/// Starts one servo thread for each thread number among the lines. The threads are added to `servos` even after a
-/// failure, so that the caller can join them. After a failure, no thread has begun its first cycle.
+/// Starts one servo thread for each thread number that occurs in `lines`. The threads are added to `servos` even after
+/// a failure, so that the caller can join them. After a failure, no thread has begun its first cycle.
 ///
 /// # Errors
 /// Returns an error if the system cannot start a thread, or if real time is enforced but not permitted.

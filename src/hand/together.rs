@@ -136,8 +136,8 @@ impl Hand {
     }
 
     /// Sends commands and paths that were admitted. `changes` are the changes that the commands make to the set points.
-    /// No planner can change a finger between its check and the sending of its command or path. No limit can change
-    /// until everything has been sent.
+    /// From the preparation of a command or path until it is sent, no other planner can change the set point of its
+    /// finger. The limits of the fingers cannot change until everything has been sent.
     fn send_admitted<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         wanted: &[Wanted<'_>; FINGERS],

@@ -96,11 +96,11 @@ impl Hand {
         Ok(self.dispatcher.member(finger.try_into()?)?.mailbox.newest_in_force())
     }
 
-    /// Waits until the condition holds for each of these fingers, for the set point that was sent last to the finger.
-    /// Returns at once if the condition holds already. After a reflex, the condition must hold for the set point of the
-    /// reflex in two cases: the reflex has replaced the set point of the planner, or the planner sent its set point
-    /// during the `inhibition` of the reflex, the time after a reaction for which the finger ignores its planner.
-    /// If the set point has expired, the condition must be true for the pose in which the finger has stayed since then.
+    /// Waits until each of these fingers meets the condition for the set point that was sent to it last. Returns at
+    /// once if the condition holds already. After a reflex, the condition must hold for the set point of the reflex in
+    /// two cases: the reflex has replaced the set point of the planner, or the planner sent its set point during the
+    /// `inhibition` of the reflex, the time after a reaction for which the finger ignores its planner. If the set point
+    /// has expired, the condition must be true for the pose in which the finger has stayed since then.
     ///
     /// # Errors
     /// Returns the errors of [`Waiting::begin`] and [`Waiting::poll`].

@@ -40,9 +40,9 @@ pub enum ContactError {
          send a symmetric one"
     )]
     NotSymmetric {
-        /// Row of the first such pair.
+        /// Row of the first entry that differs too much from the entry with row and column exchanged.
         row: usize,
-        /// Column of the first such pair.
+        /// Column of this entry.
         column: usize,
         /// Difference of the two entries, in their unit.
         difference: f64,
@@ -105,7 +105,7 @@ impl Contact {
     /// translation (cm) and rotation (rad) to deflection i.
     ///
     /// # Errors
-    /// Returns an error if K is not a spring, or if an entry of S is not finite.
+    /// Returns an error if K is not a spring, or if an entry of S or of S^T K S is not finite.
     pub fn general<const D: usize>(
         stiffness: &SMatrix<f64, D, D>,
         selection: &SMatrix<f64, D, 6>,
@@ -200,8 +200,8 @@ where
     Ok((symmetric, (smallest, largest)))
 }
 
-/// Returns [`spring`] with its negative eigenvalues replaced by zero. The rows of S have any length, so S^T K S could
-/// turn an eigenvalue slightly below zero into a large negative stiffness.
+/// Returns the stiffness that [`spring`] returns, with its negative eigenvalues replaced by zero. The rows of S have
+/// any length, so S^T K S could turn an eigenvalue slightly below zero into a large negative stiffness.
 fn nonnegative<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<SMatrix<f64, D, D>, ContactError>
 where
     Const<D>: DimSub<U1>,

@@ -12,7 +12,7 @@ pub struct LinkMomentum {
     pub(super) by_1: f64,
     /// Half the derivative of `inertia.m11` with respect to theta_2.
     pub(super) by_2: f64,
-    /// Derivative of `inertia.m23`, which couples joints 1 and 2, with respect to theta_2, with the opposite sign.
+    /// The negative of the derivative of `inertia.m23` with respect to theta_2. `inertia.m23` couples joints 1 and 2.
     pub(super) bend: f64,
 }
 

@@ -17,7 +17,7 @@ pub(crate) const LARGEST_INERTIA: f64 = 1.0;
 /// Returns the smallest inertia, kg m^2, of a rotor whose motion a step can integrate. `stiffness` is that of its
 /// tendon, N/cm, and `radius` is in cm.
 pub(crate) fn least_inertia(stiffness: f64, radius: f64) -> f64 {
-    // N/m and m.
+    // The factors 100 and 0.01 convert N/cm to N/m and cm to m.
     (stiffness * 100.0) * (radius * 0.01 * STEP).powi(2)
 }
 

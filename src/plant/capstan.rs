@@ -2,8 +2,9 @@
 //!
 //! The tendon has three sections without mass: from the motor to the conduit, from the conduit past the gauge to the
 //! pulleys, and from there to the joint. The friction of the conduit acts between the first two sections. The friction
-//! of the pulleys acts between the last two. Both obey the capstan equation: the point of contact sticks while the
-//! tensions on its two sides have a ratio of at most 1 + mu, and otherwise slides until they have this ratio.
+//! of the pulleys acts between the last two. Neighbouring sections meet at a point of contact. Both points obey the
+//! capstan equation: a point sticks while the tensions on its two sides have a ratio of at most 1 + mu, and otherwise
+//! slides until they have this ratio.
 //!
 //! The tendon has no mass, so the points slide without delay. The friction therefore has no chatter at rest, and its
 //! computation is stable for any step. With a regularised friction force (a steep function of the speed), the points
@@ -18,10 +19,10 @@ const SHARES: [f64; 3] = [0.5, 0.3, 0.2];
 /// Largest number of sweeps over the two points. With usual friction, each sweep reduces the error to a third
 /// or less.
 const SWEEPS: usize = 40;
-/// Motion of a point, m, below which the sweeps end.
+/// Sum of the motions of both points in one sweep, m, below which the sweeps end.
 const NEGLIGIBLE: f64 = 1e-13;
 
-/// The friction of one tendon as fractions of the tension.
+/// The friction of one tendon: for each point of contact, the largest ratio of the tensions on its two sides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Capstans {
     /// 1 + mu of the conduit, between motor and gauge.

@@ -20,7 +20,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 /// Default length of one [`Plant::step`] in simulated time, s.
 pub const PLANT_STEP_SECONDS: f64 = STEP;
 
-/// Joint rate at which the excess of the static friction has fallen to 1/e, rad/s.
+/// Joint rate at which the excess of the static friction over the Coulomb friction has fallen to 1/e, rad/s.
 const STRIBECK_RATE: f64 = 0.05;
 
 /// One finger. The joint angles theta, the motor angles and their rates are integrated by the semi-implicit Euler

@@ -45,8 +45,8 @@ impl FrictionContact {
         // The damper never pulls the point to the surface.
         let normal = (self.stiffness * depth - self.damping * leaving).max(0.0);
         let limit = self.friction * normal;
-        // The surface may have turned since the last step. Removing the stretch normal to the surface only reduces the
-        // energy.
+        // The surface may have turned since the last step, so the stretch may have a component normal to the surface.
+        // This component is removed, which can only reduce the energy.
         let stretch = self.stretch - outward * self.stretch.dot(&outward) + along * step;
         self.stretch = stretch.cap_magnitude(limit / self.stiffness);
         let sideways = (self.stretch * self.stiffness + along * self.damping).cap_magnitude(limit);

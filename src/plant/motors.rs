@@ -4,8 +4,8 @@ use super::stribeck::Stribeck;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Speed at which the excess of a rotor's static friction has fallen to 1/e, rad/s. With the default motor radius, the
-/// tendon moves at 0.24 mm/s then.
+/// Speed at which the excess of a rotor's friction over its Coulomb friction has fallen to 1/e of the excess at rest,
+/// rad/s. With the default motor radius, the tendon moves at 0.24 mm/s then.
 const STRIBECK_SPEED: f64 = 0.5;
 
 /// Periods of the torque ripple in a revolution.

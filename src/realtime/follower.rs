@@ -156,8 +156,9 @@ mod tests {
         fn the_mean_period_is_the_nominal_one_by_the_other_clock(
             drift in -200e-6..200e-6f64, start in 0.0..1e9f64, seed in 1u64..1000,
         ) {
-            // Wake-ups are 0 to 50 us late, and one reply in eight is lost. After 9 s the rate that the loop has learnt
-            // is wrong by 0.1 % of the drift, which is (t - 1) e^-t for a critically damped loop of 1 rad/s.
+            // Wake-ups are 0 to 50 us late, and one reply in eight is lost. After t = 9 s the rate that the loop has
+            // learnt is wrong by 0.1 % of the drift: a critically damped loop of 1 rad/s leaves the fraction
+            // (t - 1) e^-t of the drift.
             let (mean, off) = run(drift, 10, start, |cycle| {
                 let random = (cycle + seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
                 (random % 8 != 0).then_some(random % 50_000)

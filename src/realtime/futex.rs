@@ -3,8 +3,8 @@
 
 use std::sync::atomic::AtomicU32;
 
-/// Waits while `word` is `value`, for at most `limit` ns. Returns whether another thread has woken the calling thread.
-/// This function is not a cancellation point.
+/// If `word` is `value`, waits until another thread calls [`wake`], but at most `limit` ns. Returns whether another
+/// thread has woken the calling thread. This function is not a cancellation point.
 pub(super) fn wait(word: &AtomicU32, value: u32, limit: u64) -> bool {
     let limit = libc::timespec {
         tv_sec: (limit / 1_000_000_000) as libc::time_t,

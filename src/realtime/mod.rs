@@ -1,6 +1,6 @@
 //! Real-time support for the servo threads: clock, periods, priorities, locked memory and timing statistics. This
-//! module also separates this library's threads from the planner's: signals, cancellation and floating-point
-//! environments.
+//! module also keeps the code of this library and the planner's code apart with respect to signals, thread cancellation
+//! and the floating-point environment.
 
 pub(crate) mod atomics;
 mod cancellation;

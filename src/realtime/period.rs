@@ -35,9 +35,10 @@ impl Schedule {
         self.origin += by;
     }
 
-    /// Returns the number of the period that contains `time`, ns. The threads of a hand count the same periods, from
-    /// the start that their schedules have in common. [`Schedule::shift`] moves the cycles but not the periods that are
-    /// counted. If a schedule follows another clock, its cycles therefore skip or repeat a number now and then.
+    /// Returns the number of the period that contains `time`, ns. A time that is at most `margin` before the beginning
+    /// of a period already counts as part of this period. The threads of a hand count the same periods, from the start
+    /// that their schedules have in common. [`Schedule::shift`] moves the cycles but not the periods that are counted.
+    /// If a schedule follows another clock, its cycles therefore skip or repeat a number now and then.
     pub fn number(&self, time: u64) -> u64 {
         (time + self.margin).saturating_sub(self.origin) / self.period
     }

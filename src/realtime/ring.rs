@@ -20,7 +20,7 @@ pub struct Consumer<T> {
     taken: usize,
 }
 
-/// `left` counts the values that the writer has left in the ring, and `taken` counts those that the reader has taken.
+/// `left` counts the values that the writer has put into the ring, and `taken` counts those that the reader has taken.
 /// Both counters start again at 0 when they reach twice the number of places, so that a full ring differs from an empty
 /// one. The places from `taken` to `left` hold values.
 struct Ring<T> {
@@ -109,7 +109,7 @@ impl<T> Consumer<T> {
         if taken == ring.left.0.load(Ordering::Acquire) {
             return None;
         }
-        // SAFETY: the writer has left a value here, and does not access the place again before `taken` has passed it.
+        // SAFETY: the writer has put a value here, and does not access the place again before `taken` has passed it.
         let value = ring.place(taken).with(|place| unsafe { (*place).assume_init_read() });
         self.taken = ring.after(taken);
         ring.taken.0.store(self.taken, Ordering::Release);
@@ -138,7 +138,7 @@ impl<T> Drop for Ring<T> {
         // Both ends are gone, so no thread changes the counters any more.
         let (mut taken, left) = (self.taken.0.load(Ordering::Relaxed), self.left.0.load(Ordering::Relaxed));
         while taken != left {
-            // SAFETY: both ends are gone. The writer left this value, and the reader did not take it.
+            // SAFETY: both ends are gone. The writer put this value here, and the reader did not take it.
             self.place(taken).with_mut(|place| unsafe { (*place).assume_init_drop() });
             taken = self.after(taken);
         }

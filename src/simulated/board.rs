@@ -76,8 +76,8 @@ impl SimulatedBoard {
         Ok(board)
     }
 
-    /// Writes `number` into the unique numbers of the board's fingers. Two boards of one hand with the same fingers
-    /// must have different numbers.
+    /// Writes `number` into the unique numbers of the board's fingers. A hand can distinguish two boards with the
+    /// same finger only if their numbers differ.
     pub fn numbered(mut self, number: u32) -> Self {
         self.fingers.iter_mut().for_each(|finger| finger.set_board_number(number));
         self

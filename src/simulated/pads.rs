@@ -105,7 +105,7 @@ impl Pads {
     }
 
     /// Notes the contact at `now`, ns. An element carries the part of the force that presses it along its normal. The
-    /// point contact of the simulation does not depend on the positions of the elements.
+    /// positions of the elements have no effect, because the simulated contact is a single point.
     pub fn step(&mut self, now: u64, contact: &TipContact) {
         for element in 0..self.pads.len() {
             let pad = &mut self.pads[element];

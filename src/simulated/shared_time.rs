@@ -59,8 +59,8 @@ impl SharedTime {
         self.board
     }
 
-    /// Returns whether bytes for this finger can be taken now. The host of a finger that is under control sends its
-    /// next command only after the answer to the last one. While the time waits for the host of another finger, the
+    /// Returns whether bytes for this finger can be taken now. The host of a finger whose motors follow commands sends
+    /// its next command only after the answer to the last one. While the time waits for the host of another finger, the
     /// answer must wait too: a controller that continued would count periods that do not pass at its finger.
     pub fn takes(&self, finger: usize) -> bool {
         let host = &self.hosts[finger];

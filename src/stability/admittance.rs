@@ -12,8 +12,8 @@ const PULSE: f64 = 1e-3;
 /// Longest observation of the response to a pulse, s.
 const OBSERVED: f64 = 8.0;
 
-/// The response is over when its velocity stays below [`OVER`] times its largest velocity for this time, s. It is
-/// longer than a period of the slow modes of the tip.
+/// The response is over when its velocity stays below [`OVER`] times its largest velocity for this time, s. This time
+/// is longer than a period of the slow modes of the tip.
 const QUIET: f64 = 0.25;
 const OVER: f64 = 1e-6;
 

@@ -125,9 +125,9 @@ impl OneCycleMap {
     }
 
     /// Returns the largest modulus of an eigenvalue of the one-cycle map at `rest`. Returns None if the finger leaves
-    /// the rest or a tendon becomes slack. If replies are lost, the modulus is that of the map of a whole loss interval
-    /// of n cycles, and the result is its n-th root. If the contact leaves directions without stiffness, slow motions
-    /// in these directions do not count.
+    /// `rest` or a tendon becomes slack. If replies are lost, the eigenvalue belongs to the map over a loss interval of
+    /// n cycles, and the result is the n-th root of its modulus. If the contact leaves directions without stiffness,
+    /// slow motions in these directions do not count.
     ///
     /// Two fingers run, one of them with a tiny displacement. Their difference evolves by the linear map alone.
     pub fn largest_eigenvalue(&self, rest: &Rest) -> Option<f64> {

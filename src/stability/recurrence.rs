@@ -27,7 +27,7 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
 }
 
 /// Returns [`growth`] for a system with directions in which nothing holds it. Displacements in these directions remain,
-/// or change so slowly that their eigenvalues differ from 1 by less than `drift`. They are ignored.
+/// or change so slowly that their eigenvalues differ from 1 by less than `drift`. Such displacements are ignored.
 ///
 /// The function evaluates the changes from one sample to the next. They contain no constant displacement, which would
 /// hide the other modes.

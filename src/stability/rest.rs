@@ -7,7 +7,8 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 /// Lever below which a joint counts as unable to exert a force at the tip, cm. A force at the tip balances the joint
 /// torques of the spring, also those of its rotational stiffness. It does not balance a torque of the rotational
-/// stiffness at a joint with such a short lever, so the finger rests at a slightly different pose.
+/// stiffness at a joint with such a short lever, so the finger rests at a pose that differs slightly from
+/// [`Rest::joints`].
 const LEAST_LEVER: f64 = 0.5;
 
 /// An eigenvalue of a stiffness is zero if it is at most this fraction of the largest.
@@ -46,7 +47,7 @@ pub struct Wall {
 pub(super) struct Pull {
     /// Joint torques of the spring, N cm.
     pub torques: Vector3<f64>,
-    /// Force at the tip with the same joint torques, N.
+    /// Force at the tip that exerts these torques on the joints, N. [`LEAST_LEVER`] describes an exception.
     pub force: Vector3<f64>,
 }
 
@@ -59,8 +60,8 @@ pub(super) struct Support {
 }
 
 impl Rest {
-    /// Returns a hard finger with friction at rest, with the report's law, a relative damping of 1 and no wall. `kx` is
-    /// in N/cm.
+    /// Returns a finger at rest whose contact is a hard finger with friction. It has the report's law, a relative
+    /// damping of 1 and no wall. `kx` is in N/cm.
     pub fn hard_finger(joints: Vector3<f64>, deflection: Vector3<f64>, kx: &Matrix3<f64>) -> Self {
         Self { joints, deflection, stiffness: spatial(kx), law: Law::Report, damping: 1.0, wall: None }
     }

@@ -10,8 +10,8 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
-/// Smallest eigenvalue of the springs and smallest bound, N/cm. With a softer spring the finger is nearly limp,
-/// whatever the bound is.
+/// Smallest eigenvalue of the springs, and smallest bound on the largest eigenvalue, N/cm. With a softer spring the
+/// finger is nearly limp, whatever the bound is.
 pub(super) const SOFTEST: f64 = 1.0;
 
 /// Smallest and largest deflection of the tip by its load, cm. The smallest deflection is not zero, because eq. 20 has
@@ -91,9 +91,9 @@ impl ContactType {
 }
 
 /// Returns `number` samples of the finger at rest, anywhere within the joint limits. If `walls` is true, every finger
-/// presses against a wall. Of every four samples, one is isotropic with eigenvalues of 1, two have random eigenvalues
-/// of which the largest is 1, and one has three random eigenvalues. Of every four samples, one is a soft finger, and
-/// with walls one is a frictionless point. The others are hard fingers. Half of the samples have the report's law. The
+/// presses against a wall. A quarter of the samples are isotropic with eigenvalues of 1, half have random eigenvalues
+/// of which the largest is 1, and a quarter have three random eigenvalues. A quarter are soft fingers, and with walls a
+/// quarter are frictionless points. The others are hard fingers. Half of the samples have the report's law. The
 /// relative damping is 1, or the smallest or largest admissible one.
 pub(super) fn samples(finger: &ConfiguredFinger, number: usize, seed: u64, walls: bool) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(seed);

@@ -75,10 +75,10 @@ impl Search {
     /// is stable at the bound, except those that are unstable with the softest spring too.
     ///
     /// The samples are poses within the joint limits, with hard and soft fingers, stiffnesses with random axes and
-    /// eigenvalues from 1 N/cm to the bound, either law, and loads that deflect the tip by up to 2 mm. If walls of 30
-    /// to 1000 N/cm supply the loads, the contact can also be a frictionless point. The relative damping is 1, or the
-    /// smallest or the largest admissible one. As in the servo, Kx is scaled down where the tendons of a pose
-    /// support less.
+    /// eigenvalues from 1 N/cm to the bound, either [`Law`](crate::control::Law) of the spring, and loads that deflect
+    /// the tip by up to 2 mm. If walls of 30 to 1000 N/cm supply the loads, the contact can also be a frictionless
+    /// point. The relative damping is 1, or the smallest or the largest admissible one. As in the servo, Kx is scaled
+    /// down in poses in which the tendons support less.
     ///
     /// # Errors
     /// The error names one of these keys:
@@ -147,9 +147,9 @@ struct Lowered {
     uncovered: Vec<Rest>,
 }
 
-/// Returns a bound up to `most` at which the covered samples are stable. If every sample that is stable at a bound is
-/// also stable at all lower bounds, the result is the largest such bound. The covered samples are all except those that
-/// are unstable at a tried bound and also at the smallest bound.
+/// Returns a bound up to `most` at which the covered samples are stable. The covered samples are all samples except
+/// those that are unstable at a tried bound and also at the smallest bound. If every sample that is stable at a bound
+/// is also stable at all lower bounds, the result is the largest bound at which the covered samples are stable.
 fn lower_until_stable(trial: &Trial, samples: &[Sample], most: f64) -> Lowered {
     let least = (SOFTEST / GRID).min(most);
     let mut covered: Vec<&Sample> = samples.iter().collect();

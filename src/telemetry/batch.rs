@@ -6,7 +6,7 @@ use super::memory_file::Mapping;
 use super::message::Outgoing;
 
 /// Size at which the messages are written as a block, bytes. With larger blocks, a slow reader would have less time
-/// before the writer overwrites its next block.
+/// before the writer overwrites the block that the reader needs next.
 const BLOCK: usize = 64 * 1024;
 
 /// Room for one message, bytes. The largest messages are keyframes and controllers, with less than 10 kB.

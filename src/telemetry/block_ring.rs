@@ -22,7 +22,7 @@ const PUBLISHED: usize = 1;
 /// Position of the newest complete block.
 const NEWEST: usize = 2;
 
-/// Words of a block before its bytes: the number of bytes, and the marks.
+/// Words of a block before its bytes: the number of bytes, and the marks, which are numbers that the caller chooses.
 const BLOCK_HEADER: u64 = 1 + MARKS as u64;
 
 /// Bytes of a word.
@@ -136,7 +136,7 @@ impl<M: AsRef<[AtomicU64]>> BlockReader<M> {
         if self.is_overwritten(capacity) {
             return self.overtaken();
         }
-        // The number of bytes is compared before it is used in a sum, which could overflow.
+        // A block is not larger than the ring, and does not end after the published position.
         if length > capacity * WORD as u64 || words(length) > published - self.position {
             return Found::Damaged;
         }

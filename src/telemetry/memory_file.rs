@@ -1,4 +1,5 @@
-//! The memory that a hand shares with its readers: an anonymous file, which the system removes with its last user.
+//! The memory that a hand shares with its readers: an anonymous file, which the system removes when no process uses it
+//! any more.
 #![allow(unsafe_code, reason = "memory is mapped and passed to other processes")]
 
 use crate::board::descriptor::{Descriptor, check};

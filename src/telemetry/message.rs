@@ -145,8 +145,8 @@ pub struct Description {
     pub process: u32,
     /// Version of the library in the hand's process.
     pub library: String,
-    /// Time at which the hand was opened, s since 1970. Like `clock_offset`, it follows from the system's clock as it
-    /// was set when the reader attached.
+    /// Time at which the hand was opened, s since 1970. Like `clock_offset`, this time is computed with the setting
+    /// that the system's clock had when the reader attached.
     pub started: u64,
     /// Time since 1970 minus the time of the monotonic clock, ns, when the reader attached. It converts the times of
     /// the messages.

@@ -59,8 +59,8 @@ pub enum Serving {
 }
 
 impl Publisher {
-    /// Makes a hand known under its configured name or, if another hand has that name, under the name with a number.
-    /// `fingers` are the open ones.
+    /// Makes a hand known under its configured name or, if another hand has that name, under that name followed by a
+    /// number. `fingers` are the open fingers.
     ///
     /// # Errors
     /// Returns the error that the system reports.

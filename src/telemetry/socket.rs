@@ -20,7 +20,7 @@ pub(super) struct Socket(Descriptor);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Peer {
     pub user: u32,
-    /// Number of the process at the other end. It is 0 if this process cannot see that one.
+    /// Process ID. It is 0 if the process at the other end is not visible in the PID namespace of this process.
     pub process: i32,
 }
 

@@ -10,8 +10,8 @@ use crate::realtime::CycleStage;
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, Vector3};
 use std::collections::BTreeMap;
 
-/// Largest number of controllers whose mechanics are kept for a finger. The cycles of a servo first name a controller
-/// soon after the controller is announced, or never. So the oldest controllers can be forgotten.
+/// Largest number of controllers whose mechanics are kept for a finger. A servo begins to use a controller soon after
+/// the controller is announced, or never uses it. So the oldest controllers can be forgotten.
 const MOST_ADJUSTED: usize = 4096;
 
 /// Converts the cycles of a hand's fingers to samples.

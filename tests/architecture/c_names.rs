@@ -21,8 +21,7 @@ pub fn exported(folder: &Path) -> BTreeSet<String> {
     texts.flat_map(names).chain(constants).collect()
 }
 
-/// Returns whether a function has a name of the C interface. The folder has other `extern "C"` functions, which are not
-/// exported.
+/// Returns whether a function has a name of the C interface. `extern "C"` functions with other names are not exported.
 fn is_of_c(name: &str) -> bool {
     name.starts_with(char::is_uppercase) || name.starts_with("sun2xp_")
 }

@@ -10,8 +10,8 @@ const FUNCTION: usize = 60;
 /// Maximum number of columns of a line.
 const LINE: usize = 120;
 
-/// Folders whose files are not the project's: build products, libraries of the web page, and a crate of Zenoh with its
-/// upstream format.
+/// Folders whose files are not the project's: build products, libraries of the web page, and a crate of Zenoh that
+/// keeps the layout of its upstream code.
 const FOREIGN: [&str; 4] = ["target", "build", "vendor", "zenoh-link-tls"];
 
 /// Endings of the names of source files.

@@ -12,7 +12,8 @@ use syn::{
 /// links.
 pub const ALWAYS_THERE: [&str; 9] = ["bash", "cp", "env", "mkfifo", "nm", "sh", "timeout", "true", "unshare"];
 
-/// Returns the programs that `tests/tools.txt` lists: the names, and the programs that the probes start.
+/// Returns the programs that `tests/tools.txt` lists: those in its first column, and those that the shell commands in
+/// its third column start.
 pub fn listed(tools: &str) -> BTreeSet<String> {
     let lines = tools.lines().filter(|line| !line.starts_with('#'));
     let columns = lines.map(|line| line.split('|').map(str::trim).collect::<Vec<_>>());
@@ -24,7 +25,8 @@ pub fn listed(tools: &str) -> BTreeSet<String> {
 }
 
 /// Returns the programs that a source file starts by name, without their folders: the literals and constants that it
-/// passes to `Command::new` (also as `Program::new`), directly or through parameters of its own functions and closures.
+/// passes to `Command::new`, directly or through parameters of its own functions and closures. A file that imports
+/// `Command` as `Program` calls `Program::new` instead.
 pub fn started(source: &str) -> BTreeSet<String> {
     if !["Command::new", "Program::new"].iter().any(|call| source.contains(call)) {
         return BTreeSet::new();

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicU8, Ordering::Relaxed};
 use std::thread::{JoinHandle, spawn};
 use sun2xp::realtime::Clock;
 
-/// One thread for each core, which takes all of the time that it gets. Dropping this value ends the threads.
+/// One thread for each core. Each thread computes without a pause. Dropping this value ends the threads.
 struct OtherWork {
     ended: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
@@ -52,8 +52,8 @@ fn throughput_measures_every_finger_beside_other_work() {
     assert_eq!(rows.len(), 3);
 }
 
-/// A servo with real-time priority that never sleeps prevents the system from transporting bytes. The test above does
-/// not find this defect where that priority is not permitted, and this test does.
+/// A servo that has real-time priority and never sleeps prevents the system from transporting bytes. Without permission
+/// for real-time priority, the test above does not find this defect. This test finds it in any case.
 #[test]
 fn the_servos_sleep_until_the_fingers_are_under_control() {
     let clock = UnlimitedClock { phase: Arc::new(AtomicU8::new(OPEN)) };

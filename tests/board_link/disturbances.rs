@@ -1,4 +1,4 @@
-//! Disturbances of the line: bytes that are no frame, that are late, or that never end.
+//! The link copes with truncated, late and foreign frames, and with an endless stream of bytes that are no frames.
 
 use crate::other_end::OtherEnd;
 use crate::rig::{MS, board, pull, terms};
@@ -69,7 +69,7 @@ fn only_the_answer_to_a_relayed_request_is_passed_on() {
     assert_eq!(arrival, Some(Arrival::Relayed(expected)));
     assert!(!link.awaits_relayed());
     assert_eq!(link.next_arrival(&mut Allowance::for_replies(MS)).unwrap(), None);
-    // The four frames before the answer, and its repetition.
+    // The four frames before the answer count as foreign, and so does the repetition of the answer.
     assert_eq!(link.counters().foreign, 5);
 }
 

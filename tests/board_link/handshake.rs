@@ -1,4 +1,5 @@
-//! The handshake: the terms that both sides agree on, and the errors that the link reports when they do not.
+//! Tests the handshake: the terms on which both sides agree, the errors of a failed handshake, and how long the link
+//! waits for boards.
 
 use crate::other_end::OtherEnd;
 use crate::rig::{MS, board, cycle, in_time, link, pull, read, terms};

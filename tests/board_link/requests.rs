@@ -1,4 +1,5 @@
-//! Requests to the board that are repeated, damaged, impossible or unknown.
+//! Tests how a board answers commands for three fingers, and requests that are repeated, damaged, impossible or
+//! unknown.
 
 use crate::rig::{board, in_time, link, pull, read, terms};
 use sun2xp::board::protocol::*;

@@ -1,5 +1,5 @@
-//! Every conversation as lines of protocol/vectors.json and as a test of the simulated board. The conversations follow
-//! the state diagram in docs/board-protocol.md.
+//! Formats the conversations as lines of protocol/vectors.json, and tests the simulated board with each of them. The
+//! conversations follow the state diagram in docs/board-protocol.md.
 
 use super::json::{hex, list, object, text};
 use super::scripts::conversations;

@@ -1,5 +1,5 @@
-/* Opens the hand without standard descriptors. No port may take their numbers, or messages to standard error would
-   go to a board. */
+/* Opens the hand while the three standard descriptors are closed. No port may take their numbers: otherwise, messages
+   to standard error would go to a board. */
 #include <sys/stat.h>
 #include <unistd.h>
 #include "Sun2Xp.h"

@@ -1,5 +1,6 @@
-/* Threads that are cancelled inside calls. The call completes, and the cancellation takes effect at the planner's
-   own cancellation point after it. With asynchronous cancellation it takes effect as soon as the call has returned. */
+/* Threads that are cancelled inside calls. The call completes. After it, a deferred cancellation takes effect at the
+   next cancellation point in the planner's own code. An asynchronous cancellation takes effect as soon as the call has
+   returned. */
 #include <errno.h>
 #include <pthread.h>
 #include <stdint.h>

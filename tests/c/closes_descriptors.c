@@ -1,7 +1,7 @@
 /* A planner that closes descriptors it has not opened, as old daemons do, and at once opens files of its own, which
-   get the numbers of the closed ones. Its files must stay intact, no thread may spin, a fault must report what
-   happened, and CloseHand must leave the planner's files open. The arguments are the limit of descriptors for the
-   process and the highest descriptor that is closed. */
+   get the numbers of the closed ones. Its files must stay intact, and no thread may spin. If a descriptor of the
+   library was closed, a fault must report this. CloseHand must leave the planner's files open. The arguments are the
+   limit of descriptors for the process and the highest descriptor that is closed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>

@@ -1,5 +1,5 @@
-/* A planner takes events, waits for them, and gets them by a callback and by a descriptor. CloseHand ends every wait,
-   also if the callback calls it. */
+/* A planner takes events, waits for them, and gets them by a callback and by a descriptor. CloseHand ends every wait.
+   The callback may call it too. */
 #include <poll.h>
 #include <pthread.h>
 #include <stddef.h>

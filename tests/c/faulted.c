@@ -1,5 +1,5 @@
-/* If the board of finger 1 dies, calls for this finger are refused with EIO and a reason, they leave their outputs
-   unchanged, and the hand can be closed. The argument is the process number of the board. */
+/* If the board of finger 1 dies, GetPos, SendPos and SendKx are refused for this finger with EIO and a reason, GetPos
+   leaves its output unchanged, and the hand can be closed. The argument is the process number of the board. */
 #include <errno.h>
 #include <signal.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* sun2xp_fault and sun2xp_fault_text: a finger without faults, one whose board dies, a struct that is too small, and
-   every text.
+/* Tests sun2xp_fault with wrong arguments, and before and after the board of a finger dies. Tests that
+   sun2xp_fault_text has a text for every fault.
    The argument is the process number of the board of finger 1. */
 #include <errno.h>
 #include <signal.h>
@@ -39,7 +39,7 @@ int main(int count, char **arguments)
 
     for (number = 1; number <= SUN2XP_FAULT_WRONG_WIRING; number++)
         CHECK(strstr(sun2xp_fault_text(number), ". Likely cause: ") != NULL);
-    /* A later fault belongs into the loop. */
+    /* If this check fails because a fault was added, make that fault the last one of the loop above. */
     CHECK(sun2xp_fault_text(number)[0] == '\0');
     CHECK(sun2xp_fault_text(0)[0] == '\0' && sun2xp_fault_text(-1)[0] == '\0' && sun2xp_fault_text(1000)[0] == '\0');
     CHECK(CloseHand() == 0);

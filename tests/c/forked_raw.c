@@ -1,6 +1,6 @@
 /* Children in which no fork handler of the library has run: those of _Fork and of raw system calls, and a child in
-   which a handler of the planner, registered before OpenHand, makes the calls. Every call that opens, closes,
-   reads or commands a hand is refused, except sun2xp_stop_all, and the parent's hand keeps running. */
+   which a handler of the planner, registered before OpenHand, makes the calls. Calls that open, close, read or command
+   a hand are refused. sun2xp_stop_all is not refused. The parent's hand keeps running. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <pthread.h>
@@ -19,7 +19,7 @@
 static double Pos[3] = {0.1, 0.5, 0.9};
 static int in_handler;
 
-static int refuses_everything(void)
+static int refuses_all_but_stop_all(void)
 {
     struct sun2xp_status Status;
     Status.size = sizeof Status;
@@ -35,7 +35,7 @@ static void in_child(void)
 {
     alarm(PATIENCE_S);
     if (in_handler)
-        _exit(refuses_everything() ? 0 : 2);
+        _exit(refuses_all_but_stop_all() ? 0 : 2);
 }
 
 static pid_t by_atfork_handler(void)
@@ -70,7 +70,7 @@ int main(void)
         CHECK(child >= 0);
         if (child == 0) {
             alarm(PATIENCE_S);
-            _exit(refuses_everything() ? 0 : 1);
+            _exit(refuses_all_but_stop_all() ? 0 : 1);
         }
         CHECK(waitpid(child, &status, 0) == child);
         if (status != 0)

@@ -1,5 +1,5 @@
 /* Opens the hand, sends every finger to one pose, prints a line, and ends with the hand open. The argument selects
-   how it ends: "return" from main, "exit", "_exit" without exit handlers, or "wait" for a signal that ends it. */
+   how the program ends: "return" from main, "exit", "_exit" without exit handlers, or "wait" for a fatal signal. */
 #include <string.h>
 #include <unistd.h>
 #include "Sun2Xp.h"

@@ -1,5 +1,5 @@
-/* Several hands in one process: handles that are null, foreign, closed or of another hand, errors per hand and thread,
-   messages, versions. C89. */
+/* Tests several hands in one process: each moves alone, and keeps its own errors for each thread. Handles that are
+   null, foreign or closed are refused. Also tests messages and versions. C89. */
 #include <errno.h>
 #include <pthread.h>
 #include <string.h>

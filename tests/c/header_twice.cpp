@@ -2,4 +2,4 @@
 #include "Sun2Xp.h"
 #include "Sun2Xp.h"
 
-extern int nothing_else;
+extern int unused;

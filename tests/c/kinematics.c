@@ -1,4 +1,4 @@
-/* sun2xp_jacobian, sun2xp_forward_kinematics, sun2xp_inverse_kinematics, sun2xp_joint_torques, sun2xp_palm_pose. */
+/* Tests the calls for kinematics, joint torques, the palm pose, limits and gravity. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

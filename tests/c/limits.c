@@ -127,7 +127,8 @@ static void refuse_terminals(void)
         REFUSED(OpenHand(), ENOSPC, "kernel.pty.max");
         check_that_nothing_is_left();
     }
-    /* /dev/ptmx is missing, /dev/pts is not mounted, opening /dev/ptmx is not permitted, or it is another device. */
+    /* The four errors mean: /dev/ptmx is missing, /dev/pts is not mounted, opening /dev/ptmx is not permitted, and
+       /dev/ptmx is another device. */
     for (number = 0; number < 4; number++) {
         refused_terminal = 1;
         terminals = 0;

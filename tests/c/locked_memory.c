@@ -37,7 +37,7 @@ static void *open_and_close(void *unused)
     CHECK(own != NULL);
     CHECK(OpenHand() == 0);
     CHECK(sun2xp_status(HAND, 1, &Status) == 0);
-    /* If nothing could be locked, this program would prove nothing. */
+    /* The checks of this program are meaningful only if memory can be locked. */
     CHECK(Status.memory_locked == 1);
     CHECK(locked() > 100);
     if (locked() > most)

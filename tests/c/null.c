@@ -1,5 +1,5 @@
-/* A null pointer in any spelling compiles and is refused at run time. The text names the call as the planner wrote
-   it, and what to pass. */
+/* A null pointer in any spelling compiles and is refused at run time. The text of HandError names the call as the
+   planner wrote it, and says what to pass. */
 #include <errno.h>
 #include <stddef.h>
 #include <string.h>

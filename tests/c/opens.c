@@ -1,4 +1,5 @@
-/* Opens the hand, prints the result on standard output, makes a few calls that are refused, and closes the hand. */
+/* Opens the hand. If this fails, prints the error on standard output and ends. Otherwise makes calls that are refused,
+   before and after it closes the hand. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

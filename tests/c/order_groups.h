@@ -1,4 +1,4 @@
-/* order_groups.h - the part of order.c for groups and kinematics: wrong values on a faulted finger. */
+/* order_groups.h - the part of order.c for groups and kinematics. The finger is faulted by an emergency stop. */
 
 static void wrong_groups(void)
 {

@@ -1,4 +1,6 @@
-/* order_springs.h - the part of order.c for springs: wrong values on a faulted finger. */
+/* order_springs.h - the part of order.c for springs. The finger is faulted by an emergency stop. The error text of
+   each call names a wrong value or the stop. The range of the damping is checked after the stop, so the text for the
+   damping 99 names the stop. */
 
 static void wrong_springs(void)
 {

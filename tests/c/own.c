@@ -1,5 +1,6 @@
-/* A planner that declares the calls itself and takes their addresses. REAL is the type of its arrays. The compiler
-   options define REAL, and either set SUN2XP_REAL to the same type or leave the header out with SUN2XP_H. */
+/* A planner that takes the addresses of the calls, and declares the calls itself (except with NO_DECLARATIONS). The
+   compiler options define REAL, the type of its arrays. They also define either SUN2XP_REAL as the same type, or the
+   header's include guard SUN2XP_H, which leaves the header out. */
 #include "Sun2Xp.h"
 #include "check.h"
 

@@ -1,5 +1,5 @@
-/* A planner whose SIGSEGV handler makes a page accessible when it is first touched, as garbage collectors do. Every
-   call that reads or writes the planner's memory finds such a page. */
+/* A planner whose SIGSEGV handler makes a page accessible when it is first touched, as garbage collectors do. Each
+   ON_DEMAND call reads or writes such a page. */
 #define _GNU_SOURCE
 #include <signal.h>
 #include <string.h>

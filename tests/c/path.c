@@ -1,4 +1,4 @@
-/* sun2xp_send_path: a path is followed as a whole, and a refused path moves nothing. sun2xp_send_position_for: the
+/* sun2xp_send_path: a finger follows a path to its end, and a refused path moves nothing. sun2xp_send_position_for: the
    angles expire. */
 #include <string.h>
 #include "Sun2Xp.h"
@@ -78,7 +78,7 @@ int main(void)
         CHECK(tries < 500);
         PAUSE_MS(20);
     }
-    /* The finger has no time to arrive. It holds the pose in which it is when the angles expire, with 1 N/cm. */
+    /* The finger has no time to arrive. When the angles expire, the finger holds its current pose with 1 N/cm. */
     CHECK(sun2xp_send_position_for(HAND, 1, Target, 0.05) == 0);
     for (tries = 0; ; tries++) {
         CHECK(sun2xp_tip(HAND, 1, &Fingertip) == 0);

@@ -51,7 +51,7 @@ static const struct refusal refusals[] = {
     {"cannot open /dev/pts/", {SYS_fcntl, SYS_fcntl}, 1},
 };
 
-/* From now on the system refuses both system calls to this thread and to the threads that it starts. */
+/* From now on, this thread and the threads that it starts cannot make these system calls. */
 static void refuse(const long calls[2], int error)
 {
     struct sock_filter code[] = {

@@ -1,4 +1,5 @@
-/* The planner's alarm signals arrive on the planner's own thread, as often as they should, while the servos run. */
+/* While the servos run, the planner's alarm signals keep arriving, and only on the planner's own thread. The timer and
+   the handler of these signals stay as the planner has set them. */
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>

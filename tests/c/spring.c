@@ -1,4 +1,4 @@
-/* sun2xp_send_joint_stiffness and sun2xp_send_joint_torque. */
+/* Tests sun2xp_send_joint_stiffness and sun2xp_send_joint_torque: the deflection of a joint, and the refusals. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

@@ -1,5 +1,5 @@
-/* A finger that is recovering reports the state "tensioning", and not "calibrating". A hand that exit has closed
-   reports that it is closed. */
+/* The records of a recovering finger have the state "tensioning", and not "calibrating". When the library has closed
+   the hand in its exit handler, the fingers report the state "closed". */
 #include <unistd.h>
 #include "Sun2Xp.h"
 #include "sun2xp.h"

@@ -12,9 +12,10 @@ int main(void)
 
     memset(&one, 0, sizeof one);
     CHECK(sun2xp_open_text("[remote]\nendpoint = \"tcp/127.0.0.1:9\"\n", &hand) == 0);
-    /* The hand has got the emergency stop that was called while the library was being loaded. */
+    /* stub_remote.c calls sun2xp_stop_all of libsun2xp while it is being loaded. libsun2xp passes this stop on after
+       the opening. sun2xp_position of stub_remote.c returns the numbers of stops and groups that it has received. */
     CHECK(sun2xp_position(hand, 1, seen) == 0 && seen[0] == 1);
-    /* A group without commands does not need a set point, or memory for one. */
+    /* A group without commands needs no memory for set points, and is not passed on to stub_remote.c. */
     CHECK(sun2xp_send_group(hand, 0, &one) == 0 && sun2xp_send_group(hand, 0, NULL) == 0);
     CHECK(sun2xp_position(hand, 1, seen) == 0 && seen[1] == 0);
     CHECK(sun2xp_close(hand) == 0);

@@ -1,5 +1,6 @@
-/* A library in place of libsun2xp_remote.so, for stub_planner.c. While it is being loaded, it calls sun2xp_stop_all, as
-   a planner could at that moment. Its hand counts the calls that it gets. GNU C99. */
+/* A library in place of libsun2xp_remote.so, for stub_planner.c. While it is being loaded, it calls sun2xp_stop_all of
+   libsun2xp, as a planner could at that moment. It counts the calls of its own sun2xp_stop_all since the hand was
+   opened, and those of its sun2xp_send_group. Its sun2xp_position returns both numbers. GNU C99. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include "sun2xp.h"

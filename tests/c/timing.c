@@ -1,5 +1,5 @@
-/* sun2xp_timing and sun2xp_reset_timing: every stage of a running servo, wrong arguments, and a struct that may grow
-   in later versions. */
+/* Tests sun2xp_timing and sun2xp_reset_timing: for every stage of a running servo, with wrong arguments, and with the
+   larger struct of a program that was compiled for a later version. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

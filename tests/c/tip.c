@@ -1,5 +1,5 @@
-/* sun2xp_send_tip, sun2xp_tip, sun2xp_send_contact, sun2xp_send_damping, sun2xp_adjust: their effects and every
-   refusal. */
+/* Tests the effects and the refusals of sun2xp_send_tip, sun2xp_tip, sun2xp_send_contact, sun2xp_send_damping and
+   sun2xp_adjust, and the effect of sun2xp_push. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

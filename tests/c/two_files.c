@@ -1,4 +1,4 @@
-/* One of two files of a program that both include Sun2Xp.c. */
+/* The main file of a program of two files. Both include Sun2Xp.c. */
 #include "Sun2Xp.c"
 #include "check.h"
 

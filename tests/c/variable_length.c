@@ -1,4 +1,5 @@
-/* Arrays of variable length, C99: the size of a row is not known when the compiler chooses between float and double. */
+/* Passes arrays of variable length (C99) to the calls. The compiler must choose between the calls for float and for
+   double, although it does not know the size of a row. */
 #include "Sun2Xp.h"
 #include "check.h"
 #include "refused.h"

@@ -1,4 +1,5 @@
-/* sun2xp_zero: a finger is zeroed while the others keep running. Fingers that do not exist are refused. */
+/* sun2xp_zero: a zeroed finger runs again and takes a set point. The call is refused before the hand is open.
+   sun2xp_zero and sun2xp_identify are refused for fingers that do not exist. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

@@ -1,4 +1,4 @@
-//! Planners in several dialects of C and in C++: they compile, move the hand, and get correct results.
+//! Compiles and runs planners and examples in several dialects of C and in C++. Most of them check their own results.
 
 use crate::c::{self, Bench, STRICT, c_compiler, said, tool};
 use crate::{strict, succeed};
@@ -118,7 +118,7 @@ fn a_hand_with_drives_at_a_can_bus_moves() {
     let source = |name: &str| c::root().join("c_examples").join(name).to_str().expect("the path is text").to_string();
     let flags = strict(&["-std=gnu99"]);
     let [drives, hand] = ["CanDrives.c", "Can.c"].map(|name| bench.build(c_compiler(), &flags, &[&source(name)]));
-    // Can.c starts the simulated drives from the folder of its own program, and under this name.
+    // Can.c starts the program CanDrives, which simulates the drives, from the folder of its own program.
     std::fs::rename(drives, bench.path().join("CanDrives")).expect("renamed");
     let run = bench.run(Command::new(hand));
     assert!(run.status.success(), "{}", said(&run));

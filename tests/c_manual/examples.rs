@@ -63,7 +63,7 @@ impl Example {
                 "sun2xp_error_text(NULL)[0] != '\\0' || sun2xp_close(hand) != 0",
             ),
         };
-        // Declarations come first in C89.
+        // In C89, declarations come first in a block, so parts that declare variables get blocks of their own.
         let blocks = format!("{{ {before} }}\n{{\n{statements}{}}}\n", self.inside(after));
         format!(
             "{included}#include \"{}\"\n\n{functions}\nint main(void)\n{{\n    {opening}\n{{\n{blocks}}}\n\
@@ -72,7 +72,8 @@ impl Example {
         )
     }
 
-    /// Statements that follow the example: those of sun2xp_open use its variables, and all others declare their own.
+    /// Returns the statements that follow the example. After the example of sun2xp_open, they use the example's
+    /// variables, so they stand in its block. After other examples, they get a block of their own.
     fn inside(&self, after: &str) -> String {
         if self.place == "sun2xp_open" { after.to_string() } else { format!("}}\n{{ {after} ") }
     }
@@ -127,7 +128,7 @@ fn every_example_compiles_in_c_and_cpp() {
 fn every_example_runs() {
     let bench = Bench::new();
     // The example of sun2xp_object needs an object, and that of sun2xp_touch an element. The object is out of reach, so
-    // that it does not disturb the others.
+    // that it does not disturb the other examples.
     let object = "[finger]\nport = \"simulated\"\n[hand.simulated_object]\nposition = [0, 0, 50]\n\
                   [finger.touch]\nelements = [{ position = [0, 0, 0], normal = [0, 0, 1] }]\n";
     bench.write("sun2xp.toml", object);

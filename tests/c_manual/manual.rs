@@ -110,8 +110,8 @@ impl Manual {
 }
 
 impl Entry {
-    /// The errnos of an entry in the order in which they are reported. A line of the list begins with one errno or with
-    /// several.
+    /// The errnos of an entry, in the order of its list. If several of them apply to a call, it reports the first of
+    /// these. A line of the list begins with one errno or with several.
     pub fn errnos(&self) -> Vec<&str> {
         let Some((_, list)) =
             self.text.split_once("or -1 with\n").or(self.text.split_once("or a negative number with\n"))

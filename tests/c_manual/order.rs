@@ -7,8 +7,8 @@ use super::manual::Manual;
 use std::collections::BTreeMap;
 use std::process::Command;
 
-/// Errnos that tests/c/order.c cannot try, because they cannot occur together with the other errnos: those of boards,
-/// of calibrations and recoveries in progress, and some of the system's.
+/// Errnos that tests/c/order.c cannot try, because they cannot occur together with the other errnos. Most of them come
+/// from boards, from the system, from calibrations and recoveries in progress, or from calls in callbacks.
 const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OpenHand", &["EACCES", "EIO", "ETIMEDOUT", "EPERM", "ENOMEM"]),
     ("CloseHand", &["EBUSY"]),

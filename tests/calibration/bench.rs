@@ -1,4 +1,4 @@
-//! A finger and a controller, under the control of a calibration. The parameters of the controller differ from the
+//! A finger and a controller, under the control of a calibration. The parameters of the controller may differ from the
 //! parameters of the finger.
 
 use nalgebra::{Vector3, Vector4};
@@ -23,8 +23,9 @@ pub struct Bench {
     pub report: Report,
     /// A gauge that always shows the same count.
     pub dead_gauge: Option<(usize, u16)>,
-    /// The gauge and the motor whose cables are plugged in at each number, 0 to 3.
+    /// `gauge_at[n]` is the gauge that is plugged in at connector n of the board, 0 to 3.
     pub gauge_at: [usize; 4],
+    /// `motor_at[n]` is the connector of the board at which motor n is plugged in, 0 to 3.
     pub motor_at: [usize; 4],
     /// What the board reports about its counts: whether their zero is valid.
     pub zero_valid: bool,

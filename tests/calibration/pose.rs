@@ -74,8 +74,8 @@ impl Trial {
     /// A spring that holds the finger's pose.
     fn spring(&self) -> Bench {
         let mut bench = Bench::in_gravity(&self.truth, &self.belief, self.gravity, 1000.0).open();
-        // Wrong gauges pull the finger away. A compliant finger, or one with its tip near the axis of joint 0, moves
-        // slowly.
+        // The wrong zeros of the gauges make the finger move away from its set point. A compliant finger, or one
+        // whose tip is near the axis of joint 0, moves slowly. So the spring gets 4 s for this motion.
         bench.go_on(4.0);
         bench
     }
@@ -226,7 +226,7 @@ fn a_limp_finger_that_nothing_holds_is_refused() {
             trial.truth.simulation.joint_coulomb_friction = [friction; 3];
             trial.zero(&mut trial.limp(), |_, plant| plant.release())
         });
-        // The remaining fingers fall, or reach their stops, before the routine can push them.
+        // In the trials without NotHeld, the finger falls, or reaches its stops, before the routine can push it.
         let pushed = tally.refused.iter().filter(|(_, obstacle)| matches!(obstacle, Obstacle::NotHeld { .. }));
         assert!(tally.accepted == 0 && pushed.count() > 25, "{:?}", tally.refused);
     }

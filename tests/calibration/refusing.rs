@@ -1,4 +1,4 @@
-//! Each refusal names its cause.
+//! Calibrations that are refused. Most tests check that the refusal names its cause.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Obstacle, Task};

@@ -81,7 +81,8 @@ impl Run {
         );
     }
 
-    /// The tolerances of the monitors cover what the identification has not found, and are in the configuration.
+    /// Checks that the tolerances of the monitors cover the friction and the remaining errors of gauge gains and moment
+    /// arms, and that the configuration has these tolerances.
     fn check_tolerances(&self) {
         let (tolerances, monitors) = (self.found.tolerances, &self.belief.monitors);
         let arms = tolerances.moment_arms.expect("every joint has its stops");

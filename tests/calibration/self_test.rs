@@ -1,4 +1,5 @@
-//! The self-test names every kind of wrong wiring, and passes a finger that is wired correctly.
+//! The self-test names at least 98 % of the faults that are tried (wrong wiring, dead parts and wrong gauge gains), and
+//! passes fingers that are wired correctly.
 
 use crate::bench::Bench;
 use rand_pcg::Pcg64;

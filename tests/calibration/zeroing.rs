@@ -57,7 +57,8 @@ fn zeroing_at_the_configured_pose_works() {
     let truth = truth();
     let mut belief = ConfiguredFinger::default();
     belief.tendon.stiffness = [330.0; 4];
-    // The zeros of the gauges are right, as after an earlier zeroing, so a finger that nothing holds keeps its pose.
+    // The zeros of the gauges are right, as after an earlier zeroing. So the finger keeps its pose, although nothing
+    // holds it.
     belief.gauge.zero = truth.gauge.zero;
     let mut bench = Bench::new(&truth, &belief, 1000.0);
     bench.run(1.0, &Activity::TakeUpSlack);

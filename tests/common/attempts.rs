@@ -22,7 +22,7 @@ pub enum Verdict {
     Again,
     /// No pause explains the failure.
     Failed,
-    /// Pauses explain the failures, but there were too many.
+    /// Pauses explain the failures, but too many attempts have failed.
     Hopeless,
 }
 

@@ -10,8 +10,8 @@ pub fn cargo() -> Command {
 }
 
 /// Removes the variables in which cargo describes the package of this test. The build script of `ring` depends on them.
-/// With these variables, cargo would compile `ring` and everything that uses it again, and once more when the tests are
-/// built the next time.
+/// With these variables, cargo would recompile `ring` and everything that uses `ring`, and would do so once more when
+/// the tests are built the next time.
 pub fn without_package(command: &mut Command) {
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();

@@ -16,8 +16,8 @@ pub fn steps() -> impl Strategy<Value = usize> {
 /// the same pair after it.
 ///
 /// With the total energy H, the potential energy V and the step h, semi-implicit Euler conserves H - h/2 dq/dt dV/dq,
-/// not H. A mode of w rad/s therefore shows an energy error of up to e = w h/2 of the swinging energy. `error` is e for
-/// the fastest mode. Over 100 ms this error averages out, except for two parts:
+/// not H. A mode of w rad/s therefore shows an energy error of up to e = w h/2 times the energy that swings in it.
+/// `error` is e for the fastest mode. Over 100 ms this error averages out, except for two parts:
 ///
 /// * Energy that moves from a slow to a fast mode raises the mean of H by the fraction e^2. The motion of a mode is
 ///   q_n = Q sin(n a) and p_n = Q w cos((n - 1/2) a) with sin(a/2) = e. So the mean of H is w^2 Q^2/2, the mean of

@@ -74,8 +74,8 @@ impl PauseWatch {
         self.shared.threads().carried = Some(byte);
     }
 
-    /// Closes the descriptors of the watch, and discards the measurements, until the guard is dropped. Only the account
-    /// of the watch's own thread stays open. Tests that count the resources of the process need this.
+    /// Discards the measurements, and closes the descriptors of the watch except the account of its own thread. The
+    /// watch rests until the guard is dropped. Tests that count the resources of the process need this.
     pub fn rest(&self) -> Rest<'_> {
         let mut threads = self.shared.threads();
         *threads = Threads::default();

@@ -1,4 +1,4 @@
-//! The tools that tests need besides Rust, and the list of tests that were skipped because one is missing.
+//! Checks whether the tools that tests need besides Rust are installed, and lists the tests that are skipped.
 //! `tests/tools.txt` names the tools and their Debian packages, and `tests/requirements.txt` the Python packages.
 //! Without a tool, the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With
 //! CI=true they fail.
@@ -116,7 +116,7 @@ fn folder_of_runs() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("skipped")
 }
 
-/// Identifies one run of the tests by the number and the start time of its parent process, because numbers are reused.
+/// Identifies one run of the tests by the ID and the start time of its parent process, because process IDs are reused.
 /// Returns `None` if there is no such process.
 fn run(parent: u32) -> Option<String> {
     let stat = fs::read_to_string(format!("/proc/{parent}/stat")).ok()?;

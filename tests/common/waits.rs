@@ -63,8 +63,9 @@ impl Waits {
         Self { noted: self.noted.iter().copied().filter(recent).collect(), lasted: seconds.min(self.lasted) }
     }
 
-    /// The longest total time for which the machine kept one thread of each role, one after the other, from running
-    /// within any `span`. A wait that began before the span counts in full.
+    /// The largest sum of waits within any `span`. For each role, the sum contains the total wait of the thread that
+    /// waited longest. These waits are added, because the roles can delay a byte one after the other. A wait that began
+    /// before the span counts in full.
     pub fn most_within(&self, span: Duration) -> Duration {
         self.worst(span).values().sum()
     }
@@ -74,7 +75,8 @@ impl Waits {
         self.worst(span).get(&part).copied().unwrap_or_default()
     }
 
-    /// For each part, the longest wait of one of its threads within the worst `span`.
+    /// For each role, the total wait of the thread that waited longest, within the `span` in which the sum of these
+    /// waits is largest.
     fn worst(&self, span: Duration) -> BTreeMap<Part, Duration> {
         let mut threads = BTreeMap::<(Part, u32), Duration>::new();
         let mut worst = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Fingers on one port: each refusal names the key and a value that works.
+//! Fingers on one port: each refusal names the key to change, and says how to change it.
 
 use crate::reading::{read, usable};
 use sun2xp::model::FingerNumber;

@@ -1,4 +1,5 @@
-//! The estimate on simulated fingers: a short version of `benches/contact`, and what docs/contact.md says of it.
+//! Tests the contact estimate on simulated fingers, with a short version of `benches/contact`, and tests what
+//! docs/contact.md says about the estimate.
 
 use crate::after_motion;
 use crate::cases::{CASES, Case};

@@ -124,8 +124,8 @@ fn release_is_a_straight_ramp_from_the_last_pull() {
 
 #[test]
 fn over_limit_torque_keeps_its_direction() {
-    // A stiff spring with a distant set point presses the finger against its stops. Its torque would need more than
-    // 60 N.
+    // A stiff spring with a distant set point presses the finger against its stops. The torque of the spring would need
+    // tensions above 60 N.
     let mut finger = ConfiguredFinger::default();
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     let mut servo = Loop::new(&finger, 1000.0);

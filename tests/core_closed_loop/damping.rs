@@ -93,7 +93,7 @@ fn the_figures_rest_with_more_damping_without_friction() {
     }
 }
 
-/// Pairs of a stiffness and a damping with which the finger never comes to rest.
+/// With each of these pairs of a stiffness and a damping outside of the admitted range, the finger keeps moving.
 #[test]
 fn refused_damping_would_not_rest() {
     let finger = finger(Scheme::StateFeedback, true);

@@ -21,7 +21,8 @@ fn frictionless(ratio: [f64; 4]) -> ConfiguredFinger {
     finger
 }
 
-/// The estimates for motors at rest: the desired tension divided by the pull that is commanded for it.
+/// The estimates of the motor model while the motors are at rest: the desired tension of each tendon divided by the
+/// pull that is commanded for it.
 fn estimates(report: &Report) -> Vector4<f64> {
     report.desired_tensions.component_div(&(report.motor_torques / 0.0475))
 }

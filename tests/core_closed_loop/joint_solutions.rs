@@ -1,5 +1,6 @@
-//! The exact law knows the position of the tip only. These tests check that a finger still reaches the joint solution
-//! that was sent, from anywhere within the joint limits.
+//! The exact law, tau = J^T Kx (x_d - x), does not distinguish joint solutions with the same tip position, for example
+//! two that bend joint 2 to opposite sides. These tests check that a finger still reaches the joint solution that was
+//! sent, from anywhere within the joint limits.
 
 use super::rig::{Loop, SCHEMES, finger_with, spring};
 use nalgebra::Vector3;
@@ -31,7 +32,7 @@ fn sent(finger: &ConfiguredFinger, [from, to]: [Vector3<f64>; 2], stiffness: f64
     let mut finger = finger.clone();
     finger.simulation.start_degrees = from.map(f64::to_degrees).into();
     let mut servo = Loop::new(&finger, 1000.0);
-    // The finger is let go with up to 60 N at some tendons.
+    // Some tendons carry up to 60 N when the held finger is released, so the monitors may raise alarms.
     servo.watched = false;
     servo.run(0.3, &spring(from, stiffness));
     if held {
@@ -43,7 +44,7 @@ fn sent(finger: &ConfiguredFinger, [from, to]: [Vector3<f64>; 2], stiffness: f64
     servo.plant.joints()
 }
 
-/// Checks eight pairs of poses for every scheme, free and held.
+/// Checks eight pairs of poses with a free finger and eight with a held one, for every scheme and stiffness.
 fn arrive(finger: impl Fn(&ConfiguredFinger) -> ConfiguredFinger, joint_2: [[f64; 2]; 2]) {
     let mut astray = Vec::new();
     for scheme in SCHEMES {

@@ -99,7 +99,7 @@ fn a_finger_with_a_stiffness_at_the_bound_settles() {
 }
 
 /// Returns the joint rate, rad/s rms over 1 s, that remains 1.5 s after a push. A joint without stiffness does not
-/// count. The largest rate in a short time would depend on the phase of the dither.
+/// count. The result is an rms value, because the largest rate in a short time would depend on the phase of the dither.
 fn residual_rate(finger: &ConfiguredFinger, rate: f64, set_point: &SetPoint) -> f64 {
     let mut finger = finger.clone();
     finger.simulation.start_degrees = set_point.joints.map(f64::to_degrees).into();

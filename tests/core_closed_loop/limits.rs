@@ -56,7 +56,7 @@ fn a_joint_beyond_its_limit_is_pushed_back() {
         let limp = spring(Vector3::zeros(), 0.0);
         let beyond = |servo: &Loop| servo.plant.joints()[1] - high[1];
         servo.plant.set_external_force(Vector3::new(0.0, 0.0, -0.3));
-        // Without a gain on the tension error, motor friction delays the finger's return.
+        // Figure 11 has no gain on the tension error, so motor friction delays the finger's return.
         let seconds = if scheme == Scheme::Figure11 { 4.0 } else { 2.0 };
         let mut farthest = f64::NEG_INFINITY;
         for _ in 0..(seconds * servo.rate) as usize {
@@ -96,9 +96,9 @@ fn a_warm_motor_is_limited_to_its_continuous_torque() {
     assert!(squares.max() > 0.8, "{:?} N^2 cm^2: the motor is not at its limit", squares.as_slice());
 }
 
-/// One motor that can give 21 N continuously, three that can give 53 N, and a torque against a stop that needs more
-/// from all of them. Figure 11 is left out: it has no gain on the tension error and does not compensate the friction of
-/// the motors.
+/// Motor 1 can pull 21 N continuously, and each of the other motors 53 N. The finger presses against a stop, and the
+/// wanted torque needs a larger pull of motor 1 than it can give continuously. Figure 11 is left out: it has no gain on
+/// the tension error and does not compensate the friction of the motors.
 #[test]
 fn a_warm_motor_does_not_change_the_direction_of_the_torque() {
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {

@@ -207,8 +207,8 @@ pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
 
 pub const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
-/// A finger without gauge noise and without dither of the joints, so that they cause no jumps of the torque when the
-/// controller is switched. With state feedback, the dither of the tensions remains.
+/// A finger without gauge noise and without dither of the joints. Both would make the torque jump when the controller
+/// is switched. With state feedback, the dither of the tensions remains.
 pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = finger_with(scheme);
     finger.simulation.gauge_noise = 0.0;

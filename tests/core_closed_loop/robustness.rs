@@ -40,7 +40,7 @@ fn motor_constants_a_fifth_off_do_not_matter() {
 }
 
 /// Figures 9 and 10 have an integral of the tension error. Figure 11 estimates the quotient of a tension and the pull
-/// commanded for it, and state feedback the disturbance of each motor.
+/// commanded for it. State feedback estimates the disturbance of each motor.
 #[test]
 fn a_jammed_motor_winds_up_neither_an_integral_nor_an_estimate() {
     for scheme in SCHEMES {

@@ -1,4 +1,5 @@
-//! Every switch that a planner may make, on a finger that is pushed away from its anchor: the torque must not jump.
+//! Switches of the set point that a planner may make, on a finger that is pushed away from its anchor: the torque must
+//! not jump.
 
 use crate::rig::{Loop, SCHEMES, quiet};
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};

@@ -1,4 +1,5 @@
-//! A pushed fingertip has the stiffness that the controller reports. This also holds near limits and for soft fingers.
+//! A pushed fingertip has the stiffness that the controller reports. This also holds near the straight pose, beyond a
+//! joint limit, and for soft fingers.
 
 use super::rig::{Loop, SCHEMES, smooth};
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector4};
@@ -6,7 +7,7 @@ use sun2xp::control::{Activity, JointSprings, Law, SetPoint, spatial};
 use sun2xp::model::Contact;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// A stiffness, N/cm, that no planner can send and no pose supports.
+/// A stiffness, N/cm, that no planner can send, and that the finger does not support in the poses in which it is used.
 const TWICE_THE_BOUND: f64 = 12.0;
 
 const LAWS: [Law; 2] = [Law::Exact, Law::Report];
@@ -108,7 +109,8 @@ fn a_finger_beyond_its_limit_has_the_reported_stiffness() {
     }
 }
 
-/// The spring of a limit needs a part of what the tendons provide. The reported part of Kx is what is left.
+/// The spring of a joint limit uses a part of the stiffness that the tendons provide. So the farther the joint is
+/// beyond its limit, the smaller is the part of Kx that the controller reports.
 #[test]
 fn a_finger_beyond_its_limit_has_less_of_its_stiffness() {
     for scheme in SCHEMES {

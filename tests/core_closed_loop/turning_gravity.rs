@@ -7,8 +7,9 @@ use sun2xp::model::configuration::ConfiguredFinger;
 
 const RATE: f64 = 1000.0;
 
-/// Largest increase of the deviation while the hand turns, cm, for each scheme of [`SCHEMES`]. The tensions change all
-/// the time, so the friction of the motors reverses. Figure 9 and Figure 11 control the tensions with less gain.
+/// Largest permitted difference between the [`deviation`] of a hand that turns and that of a hand at rest, cm, for each
+/// scheme of [`SCHEMES`]. While the hand turns, the tensions change all the time, so the friction of the motors
+/// reverses. Figure 9 and Figure 11 control the tensions with less gain, so their limits are larger.
 const INCREASE: [f64; 4] = [0.03, 0.01, 0.08, 0.01];
 
 /// Gravity of a hand that has turned by `angle`, rad, about an axis across the finger, m/s^2.
@@ -16,8 +17,8 @@ fn turned(angle: f64) -> Vector3<f64> {
     Vector3::new(2.0, 9.6 * angle.cos(), 9.6 * angle.sin())
 }
 
-/// Largest distance of the tip from its place without gravity, cm, in the last 2 of 3 s. `gravity` returns the true
-/// gravity at a time, s.
+/// Largest distance of the tip from its set point, cm, in the last 2 of 3 s. `gravity` returns the true gravity at a
+/// time, s.
 fn deviation(finger: &ConfiguredFinger, gravity: impl Fn(f64) -> Vector3<f64>) -> f64 {
     let mut servo = Loop::in_gravity(finger, finger, &gravity(0.0), RATE);
     let (pose, links) = (servo.plant.joints(), finger.links());

@@ -1,5 +1,6 @@
-//! A second derivation of a frictionless finger: its kinetic energy is summed over points with the mass and the second
-//! moments of the links, and Lagrange's equations follow by numeric differentiation. It shares no code with the plant.
+//! A second model of a frictionless finger. The kinetic energy of the links is summed over points with the mass and the
+//! second moments of the links. Lagrange's equations follow by numeric differentiation. This model shares no code with
+//! the plant.
 
 use nalgebra::{Matrix3, Rotation3, SVector, Vector3, Vector4};
 

@@ -58,8 +58,8 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
         if let Some(detectable) = case.detectable.filter(|_| known.is_none()) {
             let holds = (detectable.holds)(&bench.truth, &injected, bench.finger());
             since = since.filter(|_| holds).or(holds.then_some(now));
-            // If the fault is named before the stretch of `lasts_ms` is over, it became detectable when this stretch
-            // began.
+            // The fault counts as detectable from the moment at which `holds` becomes true, if `holds` stays true for
+            // `lasts_ms` or until the fault is named.
             known = since.filter(|since| now - since >= detectable.lasts_ms || named);
         }
         found = found.or(named.then_some(now));

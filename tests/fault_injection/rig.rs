@@ -78,9 +78,9 @@ pub struct Truth {
     pub heat: Vector4<f64>,
     /// Time for which `heat` has been above 0.95, s.
     pub hot_for: Vector4<f64>,
-    /// Fraction of the cycles of the last second that had no reply.
+    /// Fraction of the cycles that had no reply, as a moving average with a time constant of one second.
     pub lost: f64,
-    /// Fraction of the cycles of the last second that skipped periods.
+    /// Fraction of the cycles that skipped periods, as a moving average with the same time constant.
     pub skipping: f64,
 }
 

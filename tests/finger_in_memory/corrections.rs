@@ -1,4 +1,4 @@
-//! Corrections of the last set point by the library, which leave its validity as it is.
+//! The library corrects the last set point. A correction does not change the validity of the set point.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
@@ -37,7 +37,7 @@ fn a_corrected_set_point_expires_with_the_set_point_of_the_planner() {
     }
     bench.cycles(4);
     assert!(bench.report().expired, "the set point was sent 103 periods ago");
-    // A correction of the pose that is held is no command of a planner.
+    // A correction of the held pose is not a command of a planner, so the set point stays expired.
     correct(&bench);
     bench.cycles(10);
     assert!(bench.report().expired);
@@ -76,9 +76,9 @@ fn a_corrected_set_point_can_be_renewed() {
     assert!(bench.report().expired);
 }
 
-/// The set point expires in each round. The correction is made in the cycle of the expiry, in each round at a later
-/// reading of the clock. A correction that is made after the servo has taken its input and before the report is
-/// published still refers to the expired set point.
+/// In each round, a set point expires, and a correction is made in the cycle of the expiry. With each round, the
+/// correction comes one reading of the servo's clock later in this cycle. If it comes after the servo has taken its
+/// input and before the servo has published its report, it is a correction of the expired set point.
 #[test]
 fn a_correction_does_not_undo_an_expiry() {
     let mut bench = Bench::new();

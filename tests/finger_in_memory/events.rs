@@ -105,7 +105,7 @@ fn a_fault_is_an_event_with_its_number() {
 }
 
 #[test]
-fn a_warning_that_persists_is_one_event() {
+fn every_warning_that_is_given_is_one_event() {
     let mut bench = Bench::new();
     // The spring cannot hold this force, so a joint is pushed to its stop.
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, -4.0)));

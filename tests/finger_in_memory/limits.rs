@@ -1,4 +1,4 @@
-//! Random commands, paths, reflexes, pushes and touches never lead beyond a configured limit.
+//! Random commands, paths, reflexes and pushes never lead beyond a configured limit.
 //!
 //! SUN2XP_CYCLES sets the number of cycles.
 
@@ -192,7 +192,7 @@ fn no_torque_on_the_wire_exceeds_the_computed_torque_if_the_unit_of_the_board_is
     assert!(smaller > 10_000 && at_limit > 10, "{smaller} of 80 000 torques, {at_limit} at the limit");
 }
 
-/// Lowers the bound of Kx of a finger that runs, N/cm. Returns its configuration.
+/// Lowers the bound of Kx of the running finger to `bound`, N/cm. Returns the new configuration of the finger.
 fn lower_bound(bench: &Bench, bound: f64) -> ConfiguredFinger {
     let mut lowered = configuration();
     lowered.fingers[0].stiffness.bound = Some(bound);

@@ -1,5 +1,5 @@
-//! One finger from planner to board in memory, on simulated time: the set points that it holds, its faults and its
-//! warnings.
+//! Tests of one finger in memory, on simulated time, from the planner's commands to the simulated board. They test, for
+//! example, set points, paths, reflexes, events, faults and warnings.
 
 mod black_box;
 mod busy_machine;

@@ -179,8 +179,8 @@ fn whatever_replaces_a_path_the_reference_does_not_jump() {
     }
     println!("{accepted} accepted, {refused} refused, largest {:?}", track.largest());
     assert!(accepted > 20 && refused > 0, "{accepted} {refused}");
-    // A bare set point moves the input of the reference filter at up to 5 rad/s. The derivatives of this filter lag by
-    // half a cycle.
+    // These limits are wide, because a bare set point moves the input of the reference filter at up to 5 rad/s, and the
+    // derivatives of this filter lag by half a cycle.
     track.is_smooth([0.3, 40.0, 12_000.0]);
     assert_eq!(bench.stage(), Stage::Running);
 }

@@ -22,14 +22,15 @@ fn send_path(bench: &Bench, kx: f64) {
     send(bench, &[PathPose { stiffness: Some((Matrix3::identity() * kx).into()), ..joints(1.0, end) }]);
 }
 
-/// Kx in force along x, N/cm.
+/// Returns the stiffness along x that is in force, N/cm.
 fn in_force(bench: &Bench) -> f64 {
     bench.report().set_point.stiffness[(0, 0)]
 }
 
-/// The servo takes only the newest set point of a period: that of the path, and not the one with the softer Kx before
-/// it. The path must not begin with the old Kx, because the planner may have sent a damping that suits only the softer
-/// Kx.
+/// Of the set points that are sent in one period, the servo takes only the newest one. Here this is the set point of
+/// the path, so the servo never takes the set point with the softer Kx that was sent before. Nevertheless the path must
+/// begin with the softer Kx and not with the old one, because the planner may have sent a damping that suits only the
+/// softer Kx.
 #[test]
 fn a_path_begins_with_the_stiffness_that_was_sent_in_the_same_period() {
     let mut bench = Bench::new();

@@ -98,7 +98,7 @@ fn an_inhibited_planner_is_not_followed_for_a_time() {
         assert_eq!(bench.report().set_point.joints, back);
     }
     bench.cycles(3);
-    // A change of the damping starts from the pose of the reflex.
+    // A later change of the damping keeps the pose to which the reflex has retracted the finger.
     bench.mailbox.send(|set_point| set_point.damping = 1.1).expect("not faulted");
     bench.cycles(2);
     assert_eq!((bench.report().set_point.joints, bench.report().set_point.damping), (back, 1.1));
@@ -111,7 +111,8 @@ fn a_grip_without_effect_ends_a_path() {
     let grip = Reaction::Grip { direction: Vector3::x(), by: 1.0, most: 5.0 };
     let reflex = rule(Condition::JointAbove { joint: 1, angle: 0.6 }, grip);
     bench.reflexes.install(Reflex { inhibition: 0.1, ..reflex }).expect("a place");
-    // The spring presses against this force, opposite to the direction of the grip, so the grip has no effect.
+    // This force pushes the tip in the direction of the grip, so the spring presses in the opposite direction. The grip
+    // therefore has no effect.
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(1.0, 0.0, 0.0)));
     send(&bench, &[joints(2.0, [0.1, 0.9, 1.0])]);
     let springs = bench.report().springs;
@@ -121,7 +122,7 @@ fn a_grip_without_effect_ends_a_path() {
     assert!((0.5..0.8).contains(&held.joints[1]), "on its way: {}", held.joints);
     bench.cycles(200);
     assert_eq!(bench.report().set_point, held);
-    // A change after the inhibition starts from the pose that is held.
+    // A change of the damping after the inhibition keeps the pose that is held.
     bench.mailbox.send(|set_point| set_point.damping = 1.1).expect("not faulted");
     bench.cycles(5);
     assert_eq!((bench.report().set_point.joints, bench.report().set_point.damping), (held.joints, 1.1));
@@ -218,8 +219,8 @@ fn no_contact_waits_longer_than_two_periods() {
     }
 }
 
-/// Two fingers with one servo each, as in two threads. Finger 1 reacts to the touch of finger 2 at most one period
-/// after finger 2 notices the touch, whichever finger runs first in a period.
+/// Each of two fingers has its own servo, as if each servo ran in its own thread. Finger 1 reacts to the touch of
+/// finger 2 at most one period after finger 2 notices the touch, whichever finger runs first in a period.
 #[test]
 fn a_finger_reacts_to_the_touch_of_another_one_period_later() {
     let mut configuration = Configuration::default();

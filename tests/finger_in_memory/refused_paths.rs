@@ -98,7 +98,7 @@ fn the_factor_of_a_path_that_is_too_fast_is_rounded_up() {
     }
 }
 
-/// A finger that still settles has small speeds, accelerations and jerks. A single polynomial over 30 s that begins
+/// A finger that is still settling has small speeds, accelerations and jerks. A single polynomial over 30 s that begins
 /// with them would move the joints by many rad.
 #[test]
 fn a_slow_path_of_a_finger_in_motion_is_accepted() {

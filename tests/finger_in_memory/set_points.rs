@@ -157,7 +157,8 @@ fn a_replay_of_joint_springs_is_exact() {
     assert!(replayed.different == 0 && replayed.cycles >= 1200, "{replayed:?}");
 }
 
-/// A planner that waits for the arrival reads the number of its set point and the arrival in one report.
+/// A planner that waits for the arrival reads the number of its set point and the arrival in one report. A report with
+/// the number of the new set point must therefore not contain the arrival of the previous motion.
 #[test]
 fn a_motion_that_begins_without_a_reply_has_not_arrived() {
     for interpolate_ms in [None, Some(100.0)] {
@@ -177,7 +178,8 @@ fn a_motion_that_begins_without_a_reply_has_not_arrived() {
     }
 }
 
-/// A planner may wait as soon as the report says that the finger is a spring.
+/// A planner may wait for the arrival as soon as a report says that the finger is a spring. This report must therefore
+/// contain the arrival already.
 #[test]
 fn a_finger_that_becomes_a_spring_has_arrived_in_the_same_report() {
     let mut bench = Bench::new();

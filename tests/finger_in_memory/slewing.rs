@@ -1,5 +1,5 @@
-//! Tests of the reported reference while the anchor (rest position) of the finger's spring moves toward a set point at
-//! a limited speed, and of paths that begin during this motion.
+//! Tests of the motion of the anchor (rest position) of the finger's spring toward a set point: the reported reference
+//! while the speed is limited, a path that begins during the motion, and a short interpolation.
 
 use crate::motion::{Track, joints, send};
 use crate::rig::{Bench, TARGET};

@@ -91,7 +91,7 @@ fn a_set_point_that_expires_can_stop_the_finger() {
         configuration.fingers[0].motion.valid_ms = Some(50.0);
         configuration.fingers[0].motion.on_expiry = ExpiryReaction::EndState;
     });
-    // The validity in the call takes precedence over the configured one. A path is valid until its end.
+    // The validity in the call takes precedence over the configured one. The validity of a path counts from its end.
     let change = |set_point: &mut SetPoint| {
         set_point.joints = TARGET;
         Ok::<(), ()>(())
@@ -259,9 +259,9 @@ fn a_planner_that_a_reflex_inhibits_is_not_silent() {
     }
 }
 
-/// The planner sends nothing more until the path would end.
+/// The path would last 2 s. The planner sends nothing after the path.
 #[test]
-fn a_path_that_a_reflex_inhibits_is_valid_until_its_end() {
+fn a_path_that_a_reflex_inhibits_keeps_its_validity() {
     let mut bench = held_by_a_reflex(0.3);
     let report = bench.report();
     let path = plan(&report.reference, &[joints(2.0, [0.3, 0.7, 1.2])]);

@@ -239,7 +239,7 @@ fn a_reset_of_the_board_of_a_faulted_finger_makes_its_readings_invalid() {
     bench.repair_after(1);
     bench.opens();
     assert_eq!((bench.touch.reading(0), bench.touch.lost()), (Some(Default::default()), 0));
-    // The next recovery finds no further restart.
+    // The number of resets is still 1, so the next recovery finds no further reset.
     push(&bench, [0.0, 0.0, -0.3]);
     bench.cycles(3);
     stop(&mut bench);

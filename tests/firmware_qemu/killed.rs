@@ -82,9 +82,9 @@ impl Drop for Planner {
     }
 }
 
-/// Returns whether the firmware reports that its watchdog ended all fingers. After a pause of the machine, the planner
-/// may instead detect a fault and stop the fingers itself. The frames that stop them may reach the firmware after the
-/// planner was killed.
+/// Returns whether the firmware reports for every finger that the watchdog has tripped. After a pause of the machine,
+/// the planner may instead detect a fault and stop the fingers itself. The frames that stop them may reach the firmware
+/// after the planner was killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
     let ports = machine.ports();
     let fingers_a_port = machine.fingers().len() / ports.len();
@@ -134,7 +134,7 @@ fn kill_a_planner(
         return Err("a finger was not ended by its watchdog".into());
     }
     assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors are not in their end state");
-    // The planner may send a command after the watchdog has ended a finger, if it has not noticed this yet.
+    // The planner may send a command after the watchdog of a finger has tripped, if it has not noticed this yet.
     let after = asked.iter().map(|asked| asked.set_at.checked_sub(asked.arrived_at));
     after.collect::<Option<_>>().ok_or_else(|| "a command came after the end".into())
 }

@@ -207,7 +207,7 @@ pub struct Finger {
     pub asked: Asked,
 }
 
-/// One period at 500 Hz, s.
+/// Longest motion of a driven finger after a sample, s: one period at 500 Hz.
 const LONGEST_MOTION: f64 = 0.002;
 
 impl Finger {

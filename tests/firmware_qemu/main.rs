@@ -115,8 +115,9 @@ fn with_configured_hand(
     });
 }
 
-/// A hand must survive shorter pauses. A servo that receives nothing for 10 ms has faded its command to the torque of
-/// the end state, and its controller restarts when replies arrive again (docs/architecture.md).
+/// A hand must survive pauses of the machine that are shorter than this. A servo that receives nothing for 10 ms has
+/// faded its command to the torque of the end state, and its controller restarts when replies arrive again
+/// (docs/architecture.md).
 const TOLERATED_PAUSE: Duration = Duration::from_millis(50);
 
 const KEYS: &str = "rate = 500.0\nwatchdog_ms = 1000";
@@ -152,12 +153,12 @@ fn settles(emulated: Emulated) {
 }
 
 #[test]
-fn the_emergency_stop_of_the_lm3s6965_stops_the_hand() {
+fn the_emergency_stop_of_the_lm3s6965_stops_its_finger() {
     stops(LM3S6965);
 }
 
 #[test]
-fn the_emergency_stop_of_the_stm32f405_stops_the_hand() {
+fn the_emergency_stop_of_the_stm32f405_stops_its_finger() {
     stops(STM32F405);
 }
 
@@ -173,7 +174,7 @@ fn stops(emulated: Emulated) {
             error => return Err(text(error)),
         }
         assert_eq!(machine.finger(1).asked.currents, [0; 4]);
-        // The fault input belongs to finger 2.
+        // The emergency stop input belongs to finger 2, so the other fingers keep running.
         let mut others = (1..).take(emulated.fingers()).filter(|&finger| finger != 2);
         others.try_for_each(|finger| hand.position(finger).map(drop).map_err(text))
     });

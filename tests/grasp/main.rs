@@ -1,4 +1,5 @@
-//! Three simulated fingers and one object that all of them touch, with their servos, in memory and in simulated time.
+//! Three simulated fingers grasp one object. Their servos run in simulated time. A cable in memory connects the servos
+//! to the simulated board.
 
 mod holding;
 mod rig;

@@ -42,7 +42,7 @@ pub fn around_a_ball(mass: f64, friction: f64, seed: u64) -> Configuration {
         ..Default::default()
     });
     for finger in &mut configuration.fingers {
-        // The port must not be "simulated": the time limits of a built-in board are longer.
+        // With the port "simulated", the servo would apply the longer time limits of a built-in simulated board.
         (finger.port, finger.thread) = ("in memory".into(), 1);
         finger.simulation.start_degrees = [0.0, -25.0, 80.0];
         finger.simulation.seed = seed;
@@ -171,7 +171,7 @@ impl GraspingHand {
         self.run(500);
     }
 
-    /// Moves the anchors around the object against gravity by `height`, cm, in a second, and waits.
+    /// Lifts the anchors of all fingertips by `height`, cm, within 1000 cycles, and then waits for 1000 cycles.
     pub fn lift(&mut self, height: f64, squeeze: f64) {
         for step in 1..=50 {
             let up = Vector3::new(0.0, 0.0, -height * f64::from(step) / 50.0);

@@ -20,7 +20,7 @@ impl Rig {
         let switches = io.switches.clone();
         let properties = io.properties();
         let board = IoBoard::new(configuration, FingerNumber::TWO, Box::new(io), properties);
-        let board = board.expect("a step of the tensions");
+        let board = board.expect("a positive tension unit");
         Self { link: Link::new(board), switches, sequence: 0 }
     }
 

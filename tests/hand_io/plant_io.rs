@@ -12,7 +12,8 @@ use sun2xp::nalgebra::Vector3;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant};
 use sun2xp::realtime::Mutex;
 
-/// What the tests set and see. The servo's calls lock it, which real hardware must not do.
+/// The values that the tests set and read. The calls in the servo thread lock them. Code for real hardware must not
+/// wait for a lock there.
 #[derive(Default)]
 pub struct Switchboard {
     /// The errno with which every start fails, if any.

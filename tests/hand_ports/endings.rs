@@ -12,7 +12,7 @@ use sun2xp::model::configuration::EndState;
 const HOLD: &str = "end_state = 'hold'\nhold_time_ms = 1500\nhold_torque_limit = 0.3\n";
 const HOLD_TIME: Duration = Duration::from_millis(1500);
 
-/// N cm, as in [`HOLD`].
+/// Largest torque of a motor that holds, N cm: `hold_torque_limit` in [`HOLD`].
 const MOST_HELD: f64 = 0.3;
 
 /// A C planner that has sent every finger to a pose and then does what `ending` says.
@@ -70,7 +70,7 @@ fn a_killed_planner_leaves_its_motors_released() {
     let mut boards = three_boards();
     let planner = Planner::start(&boards, "", "wait");
     for (index, board) in boards.iter_mut().enumerate() {
-        // A servo that was paused for 10 ms lets its motors go for a moment.
+        // A servo that was paused for 10 ms lets its motors go for a moment, so the test waits until they are driven.
         board.wait_for(index + 1, "driven", |state| state.has(Status::ENABLED) && !state.limp());
     }
     planner.dies();

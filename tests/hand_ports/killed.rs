@@ -1,4 +1,4 @@
-//! SIGKILL of a planner: how long the motors of its boards keep running, by the boards' own clocks.
+//! Measures, with the boards' own clocks, how long the motors keep running after a SIGKILL of the planner.
 
 use crate::attempts::attempts;
 use crate::c::{Bench, STRICT, c_compiler};
@@ -12,8 +12,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 
-/// Two periods less than the watchdog's 18 ms. The servo stops a finger one period before the watchdog would, and this
-/// limit is one more period shorter.
+/// Shortest pause of the machine that excuses a failed attempt: two periods less than the watchdog's 18 ms. The servo
+/// stops a finger one period before the watchdog would, and this limit is one more period shorter.
 const TOLERATED_PAUSE: Duration = Duration::from_millis(16);
 
 /// Longest time to the motors' end state, ms, from the kill and from the last command.

@@ -1,5 +1,5 @@
-//! Provokes everything that can happen to a finger on a port, repeatedly. The finger must recover every time, and the
-//! process must hold no more resources than before.
+//! Provokes faults of fingers, boards and lines, repeatedly. The fingers must recover every time. Afterwards the
+//! process must have as many descriptors and threads as before, and its heap may have grown only slightly.
 
 use crate::pauses::name_pauses;
 use crate::recoveries::recovers_despite_pauses;
@@ -145,7 +145,7 @@ fn recover_from(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
 
 /// `SUN2XP_ROUNDS=100 cargo test --test hand_ports nothing_leaks -- --nocapture` runs more rounds.
 #[test]
-fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
+fn every_trouble_is_recovered_from_and_nothing_leaks() {
     let _turn = turn();
     let _rest = name_pauses().rest();
     let rounds = std::env::var("SUN2XP_ROUNDS").map_or(1, |rounds| rounds.parse().expect("a number"));

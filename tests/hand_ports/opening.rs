@@ -1,4 +1,4 @@
-//! Refusals of OpenHand and their texts.
+//! Refusals of `Hand::open`, with their error numbers and texts.
 
 use crate::rig::{Board, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn};
 use serialport::{SerialPort, TTYPort};

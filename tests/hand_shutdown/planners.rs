@@ -36,7 +36,7 @@ pub trait Planner: Sync {
 /// A planner that uses the C calls.
 pub struct InC;
 
-/// The first members of the structs of the C calls, and more room than they need.
+/// The first two members of the structs that the C calls fill, and more room than the other members need.
 #[repr(C)]
 struct Filled {
     size: usize,

@@ -28,7 +28,7 @@ const KEYWORDS_OF_AFTER: &[&str] = &[
 /// name. The macros of the header use the other three names.
 const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
-/// Returns every name in `code` (the declarations) except [`MACROS`], and all [`KEYWORDS_OF_AFTER`].
+/// Returns all [`KEYWORDS_OF_AFTER`], and every name in `code` (the declarations) that is not one of [`MACROS`].
 pub fn names(code: &str) -> BTreeSet<&str> {
     let lines = code.lines().filter(|line| !line.starts_with('#'));
     let words = lines.flat_map(|line| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'));

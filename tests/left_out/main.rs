@@ -1,4 +1,5 @@
-//! Machines without the tools that tests need: what `cargo test` skips and lists, and what `tests/run` installs.
+//! Tests what `cargo test` skips and lists on a machine without the tools that the tests need, and what `tests/run`
+//! installs there.
 
 #[allow(dead_code)]
 #[path = "../c/mod.rs"]

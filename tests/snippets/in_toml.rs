@@ -1,4 +1,4 @@
-//! The snippets of configuration files.
+//! Tests that the library accepts the snippets of configuration files in the documentation.
 
 use crate::pages::{in_language, pages};
 use sun2xp::hand::Configured;

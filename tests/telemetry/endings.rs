@@ -1,4 +1,5 @@
-//! The ends of hands and readers: orderly, by SIGKILL, and with a forked child that survives.
+//! Tests what a reader sees when its hand is closed, when the hand's process is killed by SIGKILL, and when a forked
+//! child survives its killed parent. Tests also that a killed reader disturbs neither its hand nor other readers.
 
 use crate::support::{OtherProcess, name, open, read_for, reader};
 use std::fs;

@@ -1,4 +1,4 @@
-//! Processes that do not keep to the protocol, and processes of other users.
+//! Tests telemetry against processes that violate its protocol, and against processes of other users.
 
 use crate::raw::RawSocket;
 use crate::support::{name, open, read_for, reader};

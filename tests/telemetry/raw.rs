@@ -6,7 +6,7 @@ use std::mem::{offset_of, size_of, zeroed};
 use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
 use std::time::Duration;
 
-/// A socket that keeps messages apart.
+/// A socket that preserves message boundaries.
 pub struct RawSocket(OwnedFd);
 
 impl RawSocket {
@@ -48,7 +48,8 @@ impl RawSocket {
         check(sent as i32).map(drop)
     }
 
-    /// Waits for a message, with the file that comes with it. The message is empty if the connection has ended.
+    /// Waits for a message. Returns the message and the file that comes with it. The message is empty if the connection
+    /// has ended.
     pub fn receive(&self, longest: Duration) -> (Vec<u8>, Option<File>) {
         let mut poll = libc::pollfd { fd: self.0.as_raw_fd(), events: libc::POLLIN, revents: 0 };
         let (mut bytes, mut control) = (vec![0_u8; 200_000], [0_u64; 8]);

@@ -17,8 +17,8 @@ import { Timeline } from "./timeline.js";
 
 const TEXT_MS = 100;
 const PLOT_MS = 66;
-/// Where the floor crosses the z axis of the palm's frame: FLOOR_CM below a hand whose fingers point up, TOP_CM below a
-/// hand whose fingers point down.
+/// The z coordinate, in the palm's frame, at which the floor crosses the z axis, cm. FLOOR_CM is for a hand whose
+/// fingers point up, and TOP_CM is for a hand whose fingers point down.
 const FLOOR_CM = -6.7;
 const TOP_CM = 15.5;
 const nothingReceived = () => ({ number: 0, lost: 0, cycles: 0, skipped: 0 });

@@ -2,7 +2,7 @@
 
 const RETRY_MS = 500;
 
-/// The token of a page that needs one is in the fragment of the address, which browsers send to no server.
+/// If the page needs a token, the token is in the fragment of the address. Browsers send the fragment to no server.
 export function token() {
   return new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
 }

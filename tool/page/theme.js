@@ -1,4 +1,4 @@
-// Colours of the page, from style.css, so that the 3-D view and the plots follow light and dark.
+// Colours of the page, from style.css, so that the 3-D view and the plots follow the light or dark colour scheme.
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 

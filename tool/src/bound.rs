@@ -81,7 +81,8 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Least number of samples of a bound. With fewer, all tips may be too near the axis of joint 0.
+/// Least number of samples of a bound. With fewer, all of them may have the tip within 3 cm of the axis of joint 0, and
+/// such samples give no bound.
 const LEAST_SAMPLES: u32 = 10;
 
 /// A finger whose bound or passivity is computed, and the rate of the hand, Hz.

@@ -180,7 +180,7 @@ pub fn with_progress(hand: &Hand, finger: i32, task: Task, signs: &str) -> Resul
         Task::Zero => "zeroing",
         Task::Identify => "identifying",
     };
-    // The steps are thousandths.
+    // The progress is counted in thousandths.
     let shown = Progress::new(format!("finger {finger}, {doing}"), 1000).with_every_name();
     let progress = |progress: calibration::Progress| {
         shown.now(progress.step.to_string());

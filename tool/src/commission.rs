@@ -45,8 +45,8 @@ pub use vitals::Vitals;
 /// The masses of the weights, kg, if none are given.
 const DEFAULT_WEIGHTS: [f64; 2] = [0.5, 1.0];
 
-/// Number of times in total that `sun2xp health` with --yes or --json repeats failed steps and readings without a
-/// question.
+/// With --yes or --json, `sun2xp health` repeats failed steps and readings without asking. This is the largest number
+/// of repetitions in total.
 const RETRIES: u32 = 3;
 
 /// Leads through the bring-up of a finger, and writes what it finds into the configuration file.

@@ -32,7 +32,8 @@ pub struct Arguments {
     /// that.
     #[arg(long)]
     yes: bool,
-    /// Print one JSON object with `healthy` and `findings`, for other programs. Implies --yes.
+    /// Print one JSON object with `healthy` and `findings`, for other programs. Implies --yes. The requests to hold the
+    /// finger and to let it go are not printed.
     #[arg(long)]
     json: bool,
 }

@@ -1,5 +1,4 @@
-//! The request to end: SIGINT, as Ctrl-C sends it, SIGTERM, SIGHUP or SIGQUIT. A program that nohup has started ignores
-//! SIGHUP.
+//! The request to end: SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT. A program that nohup has started ignores SIGHUP.
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 use std::io;

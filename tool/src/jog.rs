@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.web && !Screen::available() {
         return Err("jog needs a terminal: run it in one, or with --web".into());
     }
-    // If the page cannot be served, the hand need not be opened, and nothing moves.
+    // If the page cannot be served, the hand is not opened, and nothing moves.
     let listener = arguments.web.then(|| web::listen(&arguments.address)).transpose()?;
     let mut configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,

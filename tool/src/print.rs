@@ -1,7 +1,7 @@
 //! Output for people and for other programs, shared by all commands: aligned tables, colours, progress, JSON.
 //!
-//! Results go to standard output, progress and errors to standard error. Colours and lines appear only where the output
-//! is a terminal that shows them, so that a file or another program receives plain text.
+//! Results go to standard output, progress and errors to standard error. Colours and the lines below table headers
+//! appear only where the output is a terminal that shows them, so that a file or another program receives plain text.
 
 mod paint;
 mod progress;

@@ -18,7 +18,7 @@ use sun2xp::model::{Counted, FingerNumber, ShownPath};
 use sun2xp::realtime::now;
 use sun2xp::telemetry::{Description, Ended, Message, Reader};
 
-/// Longest time for which the recorder waits for messages before it looks at its other limits.
+/// Longest time for which the recorder waits for messages before it checks for Ctrl-C and for the end of `--seconds`.
 const WAIT: Duration = Duration::from_millis(100);
 
 /// Records every cycle of an open hand, with its events and status, into MCAP files, until Ctrl-C or until the hand is

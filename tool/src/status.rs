@@ -16,7 +16,7 @@ const MEASURING: Duration = Duration::from_millis(500);
 /// Longest time to wait for the status of every finger.
 const LONGEST: Duration = Duration::from_secs(3);
 
-/// Width of texts in a pipe.
+/// Width of texts in a pipe, in a file or on a very narrow terminal, columns.
 const WIDTH: usize = 100;
 
 /// Prints the state of an open hand, or of all open hands: stages, joints, tips, forces, tensions and timing, and

@@ -1,5 +1,5 @@
-//! The web page of `sun2xp monitor --web` and `sun2xp jog --web`: a server for browsers on this machine, or with a
-//! token for browsers on other machines.
+//! The server of the web page of `sun2xp monitor --web` and `sun2xp jog --web`. By default it serves only browsers on
+//! this machine. Browsers need a token if other machines can reach the page, or if the page may move the hand.
 //!
 //! A thread reads the hand and publishes messages to the pages. The thread does not wait for the pages.
 

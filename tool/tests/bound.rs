@@ -4,7 +4,8 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-/// A search of less than the whole set, or with another controller or rate, finds a bound that must not be stored.
+/// If a search omits plants, walls or samples of the whole set, or if its controller or rate is not the configured one,
+/// the bound that it finds must not be stored.
 #[test]
 fn only_the_bound_of_the_whole_set_can_be_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -64,8 +65,8 @@ fn the_tool_prints_the_bound_of_every_plant_and_takes_the_least() {
     let limiting = &plants[finger["set"]["limited_by"].as_u64().expect("an index") as usize];
     assert_eq!(bound(limiting), least);
 
-    // The table that people read has the same bounds. Its columns are: plant, free, (uncovered), against walls,
-    // (uncovered).
+    // The table that people read has the same bounds. Its columns are: plant, bound without walls, (uncovered samples),
+    // bound against walls, (uncovered samples). An uncovered sample is unstable even at the smallest bound.
     let printed = output(&["--samples", "10"]);
     for (free, against) in places(false).zip(places(true)) {
         let name = free["plant"].as_str().expect("a name");

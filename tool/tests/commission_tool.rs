@@ -1,4 +1,4 @@
-//! `sun2xp commission`, started by a script: files, refusals and last messages.
+//! Tests of `sun2xp commission` and `sun2xp health`, started as by a script: files, refusals and last messages.
 
 #[path = "common/board_at_port.rs"]
 mod board_at_port;
@@ -107,7 +107,7 @@ fn health_does_not_move_a_finger_with_an_open_fault() {
     );
 }
 
-/// The tool creates the file with one finger, and then adds a second finger. Each gets the board that answers for it.
+/// The tool creates the file with one finger, and then adds a second finger. It finds the board of each finger.
 #[test]
 fn a_finger_that_the_file_does_not_have_is_added_with_its_board() {
     let desk = Desk(tempfile::tempdir().expect("a folder"));

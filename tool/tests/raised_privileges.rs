@@ -18,7 +18,7 @@ use tempfile::{TempDir, tempdir_in};
 /// The number of the user `nobody`, and of a group that owns no files.
 const NOBODY: u32 = 65534;
 
-/// A capability that most containers leave to root, so that a program can get it there too.
+/// A capability that root keeps in most containers, so that a program can get it there too.
 const CAP_NET_BIND_SERVICE: u32 = 10;
 
 /// The configuration file that a program with more privileges than its caller reads.

@@ -1,4 +1,4 @@
-//! Tests that the first commands of README work as they are printed there.
+//! Tests the first commands of README. Other options or a replaced compiler shorten the commands that take long.
 
 #[allow(dead_code)]
 #[path = "../../tests/common/pauses.rs"]

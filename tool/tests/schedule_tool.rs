@@ -1,4 +1,4 @@
-//! `sun2xp schedule` with a file of costs.
+//! Tests `sun2xp schedule` with costs from a file, and with measured costs.
 
 use serde_json::{Value, json};
 use std::process::{Command, Output};
@@ -138,7 +138,7 @@ fn a_virtual_machine_is_named_where_its_times_are_measured() {
 }
 
 #[test]
-fn without_an_argument_the_tool_uses_the_file_of_open_hand() {
+fn without_config_the_tool_uses_the_file_of_open_hand() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("sun2xp.toml"), "[hand]\nrate = 640\n").expect("written");
     std::fs::write(folder.path().join("costs.toml"), COSTS).expect("written");

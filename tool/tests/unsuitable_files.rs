@@ -1,4 +1,4 @@
-//! Library and tool refuse every path that is not a regular file of an acceptable size, and do so at once.
+//! Tests that the tool refuses a path that is not a regular file of an acceptable size, and an altered black box.
 
 use std::fs::{File, write};
 use std::path::Path;
@@ -35,7 +35,7 @@ fn refusal(arguments: &[&str], configuration: Option<&Path>) -> String {
 }
 
 #[test]
-fn every_file_that_is_read_is_a_regular_file_of_a_sensible_size() {
+fn files_that_are_not_regular_or_too_large_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     assert!(Command::new("mkfifo").arg(path("fifo")).status().expect("mkfifo").success());

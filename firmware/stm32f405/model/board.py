@@ -28,7 +28,7 @@ class Board:
     """A board with the firmware image. With `cached`, the flash has the accelerator that RM0090, 3.5.2, describes: the
     64 lines of instructions that were used last need no wait states. Prefetch is off. A load of a constant beside the
     code always waits. A load from the table of the checksum does not wait, because the table is in the cache for data.
-    Without `cached`, every new line and every load waits, even a load from SRAM. This gives the upper bound."""
+    Without `cached`, every new line and every load waits, even a load from SRAM. The times are then upper bounds."""
 
     def __init__(self, image, binary, cached=True):
         self.program = Program(image)

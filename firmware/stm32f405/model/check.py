@@ -98,7 +98,7 @@ def drives_the_motors():
     board = configured()
     registers = board.registers
     assert registers.enabled() == (False, False)
-    # 2000 nN m / 23.4 mN m/A is 85.47 uA for each unit; 500 uA are a step.
+    # A unit of the command is 2000 nN m, and 2000 nN m / 23.4 mN m/A is 85.47 uA. A step of the PWM is 500 uA.
     reply = board.ask(command([1000, -2000, 0, 23750]))
     assert status(reply) & ENABLED and registers.enabled() == (True, True)
     steps = [registers.values[reg.TIM8 + 0x34 + 4 * motor] for motor in range(4)]

@@ -130,7 +130,11 @@ ROWS = [
         QUICK,
     ),
     ("the same while more Commands arrive at 2 Mbaud", lambda cached: at_any_phase(cached, 2), IN_TIME),
-    ("the same while the main loop takes a sample of its own", lambda cached: during_a_sample(cached, 1), IN_TIME),
+    (
+        "the same for one set of torques, while the main loop takes a sample and one more Command arrives",
+        lambda cached: during_a_sample(cached, 1),
+        IN_TIME,
+    ),
     ("interrupt of one byte at 2 Mbaud (a byte takes 5 us)", one_handler, NO_LIMIT),
     ("from the sample of the gauges to the last encoder", sampling_skew, NO_LIMIT),
     (

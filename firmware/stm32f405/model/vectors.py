@@ -37,16 +37,17 @@ def answer_of(board, wire):
 def check(board, step):
     frame = answer_of(board, bytes.fromhex(step["send"]))
     if step["answer"] == "none":
-        assert frame is None, frame.hex()
+        assert frame is None, f"no answer expected, but the board sent {frame.hex()}"
         return
     assert frame is not None, "no answer"
     kind = frame[0] >> 4
-    assert TYPES[kind] == step["answer"], frame.hex()
+    assert TYPES[kind] == step["answer"], f"{step['answer']} expected, but the board sent {frame.hex()}"
     if "status" in step:
         status = struct.unpack_from("<H", frame, STATUS_AT[kind])[0]
         assert (status ^ step["status"]) & ~ZERO_VALID == 0, f"status {status:#x}"
     if "reason" in step:
-        assert (frame[3], frame[4] | frame[5] << 8) == (step["reason"], step["detail"]), frame.hex()
+        found, expected = (frame[3], frame[4] | frame[5] << 8), (step["reason"], step["detail"])
+        assert found == expected, f"reason and detail {found}, but {expected} expected"
 
 
 def possible(step):
@@ -83,8 +84,9 @@ def noise():
         answer_of(board, bytes(good) if any_byte.random() < 0.5 else other)
         sequence = any_byte.randrange(256)
         frame = answer_of(board, b"\0" + wrap(0x11, sequence, bytes([1, 1])))
-        assert frame is not None and frame[:2] == bytes([0x91, sequence])
-        assert board.registers.enabled() == (False, False) and board.registers.overruns == 0
+        assert frame is not None and frame[:2] == bytes([0x91, sequence]), "no answer to a good frame after noise"
+        enabled, overruns = board.registers.enabled(), board.registers.overruns
+        assert enabled == (False, False) and overruns == 0, f"enabled {enabled}, {overruns} overruns after noise"
 
 
 if __name__ == "__main__":
@@ -100,4 +102,5 @@ if __name__ == "__main__":
         except AssertionError as failure:
             sys.exit(f"{conversation['name']}: {failure}")
     noise()
-    print(f"{len(conversations) - left_out} of {len(conversations)} conversations, and {STREAMS} streams of noise")
+    passed = f"passed: {len(conversations) - left_out} conversations and {STREAMS} streams of noise"
+    print(f"{passed}. Left out, because the model cannot run them: {left_out} conversations")

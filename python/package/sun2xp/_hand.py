@@ -47,7 +47,8 @@ class Hand(_sun2xp.Hand):
         condition: str = "arrived",
         timeout: Optional[float] = None,
     ) -> None:
-        """Waits until the condition holds for each of these fingers, for the set point that was sent to it last.
+        """Waits until the condition holds for each of these fingers. The condition refers to the set point that was
+        sent to the finger last.
 
         Args:
             fingers: a finger, or several. The default is all fingers of the hand.

@@ -42,8 +42,8 @@ class Recording:
         self.marks = [Mark(*mark) for mark in marks]
 
     def seconds(self, finger: int) -> numpy.ndarray:
-        """The times of the cycles of a finger since the first cycle of the recording, s: shape (n,). The first cycle is
-        that of the whole file, even if its finger was not read."""
+        """The times of the cycles of a finger, s: shape (n,). They are counted from the first cycle in the file, even
+        if that cycle belongs to a finger that was not read."""
         return (self.cycles[finger]["time"] - self._begin) * 1e-9
 
     def to_pandas(self, finger: int) -> "pandas.DataFrame":

@@ -35,12 +35,12 @@ def tension_below(tension: float) -> Condition:
 
 
 def joint_above(joint: int, angle: float) -> Condition:
-    """The angle of a joint, 0 to 2, is above this value, rad."""
+    """The angle of joint 0, 1 or 2 is above this value, rad."""
     return ("joint_above", joint, angle)
 
 
 def joint_below(joint: int, angle: float) -> Condition:
-    """The angle of a joint, 0 to 2, is below this value, rad."""
+    """The angle of joint 0, 1 or 2 is below this value, rad."""
     return ("joint_below", joint, angle)
 
 

@@ -51,8 +51,8 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Makes an environment with the wheel and the packages of a list, which `tests/run` has downloaded into the folder
-    /// `downloaded`. If the packages are not there, returns `None` and lists the test as skipped under `name`.
+    /// Makes an environment with the wheel and the packages that the file `list` names. `tests/run` has downloaded them
+    /// into the folder `downloaded`. If they are not there, returns `None` and lists the test as skipped under `name`.
     pub fn new(name: &str, list: &str, downloaded: &str) -> Option<Self> {
         let python = tools::python(name)?;
         let wheels = python.ancestors().nth(2).expect("the folder of the environment").join(downloaded);

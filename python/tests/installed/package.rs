@@ -1,4 +1,4 @@
-//! The tests of the package: python/tests.
+//! Runs the tests of the Python package, which are in python/tests, with the installed wheel.
 
 use crate::cargo::cargo;
 use crate::environment::{Environment, ROOT, run};

@@ -1,4 +1,5 @@
-//! The tests of the ROS 2 node: ros/tests. They run in a network namespace of their own, where no other node is.
+//! Runs the tests of the ROS 2 node, ros/tests. If permitted, they run in a network namespace of their own, so that
+//! they find no other nodes.
 
 use crate::environment::{Environment, ROOT, run};
 use std::path::Path;

@@ -140,7 +140,7 @@ fn admit_joints(status: &FingerStatus, finger: Finger, joints: &[f64; 3]) -> Res
     finite("Pos", finger, joints)?;
     for (joint, &value) in joints.iter().enumerate() {
         let (low, high) = (status.low[joint], status.high[joint]);
-        // A limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
+        // An angle at the limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
         let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
         if value < low - rounding || value > high + rounding {
             return Err(AdmissionError::BeyondJointLimit { finger, joint, value, low, high });

@@ -74,7 +74,7 @@ impl RemoteConfiguration {
         Self::parse(&text, folder).map_err(|wrong| wrong.in_file(path, &text))
     }
 
-    /// Reads the tables of the text of a configuration. Relative names of files are relative to `folder`.
+    /// Reads the tables from the text of a configuration file. Relative names of files are relative to `folder`.
     ///
     /// # Errors
     /// Returns an error with the line if the text is wrong.

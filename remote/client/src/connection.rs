@@ -97,7 +97,8 @@ fn unreachable(configuration: &RemoteConfiguration, error: &str) -> String {
 /// is over. The list is empty if nobody was reached, or if the connection was lost before the first reply.
 ///
 /// # Errors
-/// Returns the text of Zenoh's error if no reply has arrived within `limit`, or if the first reply is an error.
+/// Returns the text of the error if Zenoh refuses the get, if no reply has arrived within `limit`, or if the first
+/// reply is an error.
 pub fn get(
     session: &Session,
     selector: &str,

@@ -115,7 +115,7 @@ pub enum RemoteError {
         /// The text of the Answer.
         text: String,
     },
-    /// The server does not support this version of the protocol.
+    /// The server has sent data that is not a message of this version of the protocol.
     #[error(
         "the server of the hand \"{hand}\" has sent data that is not a message of version 1 of the protocol \
          ({reason}): use a client and a server of the same version"

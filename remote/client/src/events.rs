@@ -36,7 +36,7 @@ impl Queue {
 
     fn put(&self, event: Event) {
         let mut state = self.lock();
-        // A server that was started again counts from 1.
+        // A restarted server counts from 1, so a number that is not above the newest one shows no loss.
         let lost = state.newest.filter(|&newest| newest < event.number).map_or(0, |newest| event.number - newest - 1);
         state.newest = Some(event.number);
         state.lost = state.lost.saturating_add(lost);

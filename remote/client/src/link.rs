@@ -213,7 +213,7 @@ impl Drop for Link {
     }
 }
 
-/// Sends Targets until the end.
+/// Sends Targets until `Shared::ended` is set.
 fn send(shared: &Shared, session: &Session, key: &KeyExpr<'_>) {
     let mut exchange = shared.lock();
     while !shared.ended.load(Ordering::Relaxed) {

@@ -38,7 +38,7 @@ pub struct Outbox {
     sequence: u64,
     /// The newest time of a State or Answer, server's clock.
     seen: u64,
-    /// The time stamp that the changes share with Targets to other hands.
+    /// The time stamp that the next Target with changes shares with Targets to other hands; none if it shares none.
     stamp: Option<u64>,
     /// The time of the newest Target of this epoch, and its time stamp.
     sent: Option<(u64, u64)>,
@@ -121,17 +121,17 @@ impl Outbox {
         self.slots[finger.index()].is_applied()
     }
 
-    /// Notes that the server has refused a Target. The next new part of a finger omits the values of this Target that
-    /// no record has confirmed.
+    /// Notes that the server has refused a Target. The next change for a finger is sent without the values of this
+    /// Target that no record has confirmed.
     pub fn refused(&mut self, answer: &Answer) {
         self.seen = self.seen.max(answer.time);
         if self.ownership.is_ok_and(|ownership| ownership.epoch == answer.epoch) {
             self.slots.iter_mut().for_each(|slot| slot.refuse(answer.number));
             if answer.number > self.reported {
                 self.refusal = Some(answer.text.clone());
-                // Every Target that was sent after the refused one repeated its values, so the server refuses it too.
-                // Such a refusal is not reported, unless its Target also contained a later change, which the slots have
-                // not dropped.
+                // Every Target that was sent after the refused one repeated the refused values, so the server refuses
+                // that Target too. Its refusal is reported only if the Target also contained a later change that the
+                // slots have kept.
                 let others = self.slots.iter().filter_map(Slot::first_unconfirmed).min();
                 self.reported = others.map_or(self.sequence, |first| first - 1).max(answer.number);
             }

@@ -6,7 +6,7 @@
 pub struct RemoteProgress {
     /// The server has applied the command.
     pub applied: bool,
-    /// The finger has arrived where the command wants it, since the server applied the command.
+    /// The server has applied the command, and the finger has since arrived where the command wants it.
     pub arrived: bool,
     /// The joints have come to rest since the server applied the command.
     pub settled: bool,

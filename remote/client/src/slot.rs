@@ -1,4 +1,5 @@
-//! What is sent to one finger.
+//! What is sent to one finger. A Target is the message with the set points of the owner. It is repeated, and contains
+//! one part for each finger that it commands. A record is the server's report of one cycle of a finger.
 
 use crate::change::Change;
 use std::collections::VecDeque;
@@ -7,7 +8,7 @@ use sun2xp_remote_protocol::{Finger, Part, Place};
 /// What is sent to one finger: the part that Targets repeat, and the changes that this part does not contain yet.
 #[derive(Clone, Debug, Default)]
 pub struct Slot {
-    /// Changes that no Target has yet.
+    /// Changes that no Target contains yet.
     pending: Change,
     /// The command number and the values of the part that Targets repeat; none if the finger was not commanded, or if
     /// the newest part was refused.
@@ -71,8 +72,8 @@ impl Slot {
     }
 
     /// Drops the changes that were in the refused Target with this sequence number, and are not confirmed. Later
-    /// changes are kept. If their own Target repeated the dropped changes, the server refuses that Target too, and its
-    /// refusal then drops the later changes.
+    /// changes are kept. If the first Target with a later change repeated the dropped changes, the server refuses that
+    /// Target too, and this function then drops the later change.
     pub fn refuse(&mut self, sequence: u64) {
         let before = self.unconfirmed.len();
         self.unconfirmed.retain(|sent| sent.sequence > sequence);

@@ -2,8 +2,8 @@
 
 use sun2xp_remote_client::Record;
 
-/// The records of a finger from which its measured rate follows: the first and the newest one that this client has
-/// noted since the server started.
+/// The two records from which the measured rate of a finger is computed: the first and the newest record that this
+/// client has noted since the server started.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MeasuredRate(Option<(Record, Record)>);
 

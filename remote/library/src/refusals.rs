@@ -65,8 +65,8 @@ pub(crate) fn recovery_refusal(error: RemoteError) -> RemoteRefusal {
     request_refusal(error, (number::PORT, libc::EIO))
 }
 
-/// If a request has failed, the server gives the reason as a text and nothing else. `failed` has the number and the
-/// errno for all these reasons.
+/// If a request has failed, the server gives the reason only as a text. So the number and the errno are those of
+/// `failed`, whatever the reason is.
 fn request_refusal(error: RemoteError, failed: (i32, i32)) -> RemoteRefusal {
     if error.kind() != Kind::Refused {
         return refusal(error);

@@ -47,8 +47,8 @@ pub(crate) fn status(hand: &Status, finger: &FingerStatus, newest: &Record, meas
     }
 }
 
-/// A record has the force that follows from the tensions. It does not have the estimate of the force without friction,
-/// weight and inertia.
+/// A record has the force that follows from the tensions. It has no `contact_force`: the estimate that excludes
+/// friction, weight and inertia of the finger.
 pub(crate) fn tip(record: &Record) -> sun2xp_tip {
     sun2xp_tip {
         size: 0,

@@ -1,7 +1,7 @@
-//! Runs planners in the styles of 1990 and later. Each planner runs on a simulated hand of this machine, and on the
-//! same hand behind a server. The planners are linked against libsun2xp and know nothing of the network. A planner must
-//! print the same in both runs: results, errnos and texts exactly, and numbers with a decimal point, such as poses,
-//! within 0.01.
+//! Runs planners in the styles of 1990 and later. The planners are linked against libsun2xp and know nothing of the
+//! network. Most planners run on a simulated hand of this machine, and on the same hand behind a server. Such a planner
+//! must print the same in both runs: results, errnos and texts exactly, and numbers with a decimal point, such as
+//! poses, within 0.01. The other planners run only on the hand behind the server, and must print given texts.
 
 mod rig;
 
@@ -50,8 +50,8 @@ fn alike(planner: &str, flags: &[&str], ways: &[Way]) {
     }
 }
 
-/// A few planners test both ways to the hand of the server. Each of the other planners tests one way, because both lead
-/// to the same code.
+/// The ways to the hand of the server. Some planners test both ways. Each of the other planners tests one way, because
+/// both ways lead to the same code.
 const BY_BOTH: &[Way] = &[Way::Configured, Way::Path];
 const BY_CONFIGURATION: &[Way] = &[Way::Configured];
 const BY_PATH: &[Way] = &[Way::Path];

@@ -25,7 +25,7 @@ impl Action {
     pub const ALL: [Action; 6] =
         [Self::Acquire, Self::Release, Self::Recover, Self::Calibrate, Self::Identify, Self::Stop];
 
-    /// The name of the action in keys.
+    /// The name of the action in Zenoh keys.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -28,7 +28,8 @@ pub enum DecodeError {
     Length {
         /// The message.
         kind: MessageKind,
-        /// The length that the fields give. If the fields are missing, the shortest length.
+        /// The length that the fields require. If the payload is too short for the fixed fields of the message or of a
+        /// part, a lower bound of this length.
         expected: usize,
         /// The length of the payload.
         found: usize,
@@ -106,7 +107,7 @@ pub enum Reason {
         /// Its smallest angle, rad.
         smallest: f64,
     },
-    /// The bytes of a value that is not given are not zero.
+    /// The message does not give a value, but the bytes of this value are not zero.
     #[error("must have only zero bytes, because no value is given")]
     NotZero,
     /// The bytes after a text, up to the end of its field, are not zero.

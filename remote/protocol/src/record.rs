@@ -21,7 +21,8 @@ pub struct Record {
     pub touching: bool,
     /// Whether the finger is caught: the validity of the newest Target has ended, so the finger holds its pose.
     pub caught: bool,
-    /// Whether the finger has arrived where the owner wants it, since the server applied `command`.
+    /// Whether the finger has arrived where the owner wants it. Only an arrival after the server applied `command`
+    /// counts.
     pub arrived: bool,
     /// Whether the joints have come to rest since the server applied `command`.
     pub settled: bool,

@@ -20,7 +20,7 @@ pub struct Request {
     pub take_over: bool,
     /// Whether to recover the fingers that have stopped. Only with acquire.
     pub recover: bool,
-    /// The epoch. Acquire and stop ignore it.
+    /// The epoch: the random number that the server gave to the owner. Acquire and stop ignore it.
     pub epoch: u64,
 }
 

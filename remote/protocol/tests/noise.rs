@@ -1,4 +1,4 @@
-//! No payload makes a decoder panic, and whatever a decoder accepts is a message that can be encoded again.
+//! Random and damaged payloads make no decoder panic. A message that a decoder accepts can be encoded again.
 
 mod common;
 

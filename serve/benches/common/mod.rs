@@ -113,7 +113,8 @@ pub fn pose_of(number: u32) -> [f64; 3] {
     [0.1, 0.5, 0.9 + 1e-6 * f64::from(number % 100_000)]
 }
 
-/// Returns the percentile: the smallest value that at least the fraction `part` of `values` does not exceed.
+/// Returns the percentile: the smallest element of `values` for which at least the fraction `part` of all elements is
+/// less than or equal to this element.
 pub fn percentile(values: &[f64], part: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The certificates of the encrypted engines: an authority, a server and a client, as on a lab's network.
+//! Makes the certificates for TLS connections: those of an authority, a server and a client, as on a lab's network.
 
 use crate::Failure;
 use rcgen::{

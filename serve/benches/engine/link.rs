@@ -48,7 +48,7 @@ impl Engine {
 /// When a message of a flood is sent.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sending {
-    /// At once and separately, like a Target.
+    /// At once and separately, like a Target, the message with the set points of a remote planner.
     AtOnce,
     /// The engine may collect several messages and send them together.
     Together,

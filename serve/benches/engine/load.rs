@@ -1,4 +1,4 @@
-//! Processes that this benchmark starts from its own program, and the load of every core.
+//! Starts processes that run this benchmark's own program, and occupies every core in one of them.
 
 use crate::Failure;
 use std::ffi::OsStr;

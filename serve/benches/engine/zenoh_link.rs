@@ -107,7 +107,7 @@ impl Client {
         while begin.elapsed() < PATIENCE {
             self.at_once.put(vec![ANSWER]).wait()?;
             if self.answers.recv_timeout(Duration::from_millis(100)).is_ok() {
-                // Late answers to earlier messages must not answer a later one.
+                // A late answer to one of these messages must not be taken for the answer to a later message.
                 while self.answers.recv_timeout(Duration::from_millis(300)).is_ok() {}
                 return Ok(());
             }

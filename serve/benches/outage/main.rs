@@ -1,6 +1,7 @@
-//! Makes the planner or the line fail many times. Prints the time from a failure until the fingers were caught, and the
-//! time until they went to their end states. Both times come from the telemetry of the hand. Also prints the threads,
-//! descriptors and memory of the server before and after the failures. Needs root, because it makes network namespaces.
+//! Makes the planner or the line fail many times. Prints the time from a failure until the fingers were caught (held
+//! softly), and the time until they went to their end states. Both times come from the telemetry of the hand. Also
+//! prints the threads, descriptors and memory of the server before and after the failures. Needs root, because it makes
+//! network namespaces.
 
 #[path = "../../tests/network/line.rs"]
 mod line;

@@ -29,7 +29,7 @@ fn keys_are_private_and_nothing_is_overwritten() {
 }
 
 #[test]
-fn names_that_would_collide_are_refused() {
+fn names_that_would_collide_or_are_hidden_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     for clients in [names(&["ca"]), names(&["a", "a"]), names(&["."]), names(&[".hidden"])] {
         assert!(make(folder.path(), &Wanted { clients, ..Wanted::default() }).is_err());

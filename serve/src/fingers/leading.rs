@@ -9,7 +9,8 @@ use sun2xp::motion::Pose;
 use sun2xp::nalgebra::Vector3;
 use sun2xp::{FingerNumber, HandError};
 
-/// A set point on the way to a destination is not sent if it would move the one in force by less than this, rad.
+/// A set point on the way to a destination is not sent if all of its joint angles differ from those of the set point in
+/// force by less than this, rad.
 const SMALLEST_STEP: f64 = 1e-4;
 
 /// A place that may be sent as a set point.
@@ -36,8 +37,8 @@ impl Fingers {
         let mut keeping = goal;
         if goal.destination == Destination::None {
             match goal.kept.filter(|_| report.expired) {
-                // The kept place can be the pose that the finger held when it became a spring. This pose can be
-                // slightly beyond a limit.
+                // The kept place can be the pose that the finger had when it began to follow set points. This pose can
+                // be slightly beyond a limit.
                 Some(place) => keeping.destination = Destination::Joints(self.clamped(number, &place.into())?.into()),
                 None => keeping.kept = Some(report.set_point.joints),
             }
@@ -46,8 +47,8 @@ impl Fingers {
     }
 
     /// Returns the goal of a finger whose Kx is about to be sent. If the owner has not commanded the place of the
-    /// finger, the new Kx pulls it to the set point in force. If this set point is farther ahead of the finger than the
-    /// lead admits, it becomes the destination, so that the lead bounds the force.
+    /// finger, the new Kx pulls the finger to the set point in force. If this set point is farther ahead of the finger
+    /// than the lead admits, it becomes the destination, so that the lead bounds the force.
     pub(super) fn pulled(&self, number: i32, goal: Goal, report: &FingerReport) -> Result<Goal, HandError> {
         if goal.destination != Destination::None {
             return Ok(goal);
@@ -58,7 +59,7 @@ impl Fingers {
         Ok(if whole { goal } else { pulled })
     }
 
-    /// Returns the farthest place on the way to the destination that the lead admits, and whether this place is the
+    /// Returns the farthest place that the lead admits on the way to the destination, and whether this place is the
     /// destination itself.
     pub(super) fn led(
         &self,
@@ -79,7 +80,7 @@ impl Fingers {
         Ok((Some(LedPlace { pose, joints: place.into() }), part >= 1.0))
     }
 
-    /// Returns the part of the way from the finger to `end`, rad, that the lead admits.
+    /// Returns the part, 0 to 1, that the lead admits of the way from the finger to `end`, rad.
     pub(super) fn admitted(&self, number: i32, goal: &Goal, report: &FingerReport, end: &Vector3<f64>) -> f64 {
         let joints = report.cycle.joints;
         let jacobian = self.hand.jacobian(number, Some(joints.into()));
@@ -92,8 +93,8 @@ impl Fingers {
 
     /// Returns the joint angles, rad, that the hand uses if `joints` are sent: they are within the limits. Returns none
     /// if the hand refuses `joints`. In that case the caller sends `joints` to the hand without the bound of the lead,
-    /// and the hand refuses them with the reason. This function uses the check of the hand itself. With a stricter
-    /// check, the hand would accept some of the angles that are sent without the bound.
+    /// and the hand refuses them with the reason. This function uses the hand's own check. With a stricter check, it
+    /// would return none for some angles that the hand accepts, and these would be sent without the bound.
     pub(super) fn within_limits(
         &self,
         finger: FingerNumber,

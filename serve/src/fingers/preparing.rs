@@ -10,8 +10,8 @@ use sun2xp::nalgebra::Vector3;
 use sun2xp::{FingerNumber, HandError, Stage};
 use sun2xp_remote_protocol::{Part, Place};
 
-/// What a part of a Target becomes for its finger: the new goal, the command in the group that the hand gets, and the
-/// poses of the path.
+/// A prepared part of a Target: the new goal of its finger, the finger's command in the group that the hand gets, and
+/// the poses of the path.
 pub(super) struct Prepared {
     pub finger: usize,
     pub goal: Goal,
@@ -61,7 +61,7 @@ impl Fingers {
         if let Place::Joints(joints) = &part.place {
             match self.within_limits(known, joints)? {
                 Some(admitted) => goal.destination = Destination::Joints(admitted),
-                // The hand refuses the group, with the reason.
+                // The angles are out of range. The hand refuses the group, and gives the reason.
                 None => command.pose = Some(Pose::Joints(*joints)),
             }
         }
@@ -73,7 +73,8 @@ impl Fingers {
             (command.pose, goal.whole) = (place.map(|place| place.pose), whole);
         }
         if let Some((kx, damping)) = goal.spring.filter(|_| report.expired) {
-            // The finger was caught and has the soft spring. The command contains the spring that the owner wants.
+            // The finger was caught (see `crate::silence`): it holds its pose with a soft spring. The command restores
+            // the spring that the owner wants.
             (command.stiffness, command.damping) = (Some(rows(&kx)), Some(damping));
         }
         let empty = command.pose.is_none() && command.stiffness.is_none() && command.damping.is_none();

@@ -125,7 +125,8 @@ fn check_order(seen: &Seen) -> Result<(), String> {
     if seen.arrived || seen.ended { Ok(()) } else { Err("neither arrived nor ended".into()) }
 }
 
-/// Checks a ramp over a line with this seed that `spoil` has spoiled. A pause of the machine excuses a failure.
+/// Checks a ramp over a line that `spoil` has spoiled. `seed` is for the random losses and delays of the line. A pause
+/// of the machine excuses a failure.
 fn stays_in_order(seed: u64, name: &str, catch_ms: u32, spoil: impl Fn(&Line), arrives: bool) {
     attempts(name, TOLERATED_PAUSE, |watch| {
         let Some(line) = permitted_line(seed) else { return Ok(()) };

@@ -20,8 +20,8 @@ const KX: usize = PART + 32;
 /// A source of payloads. Equal seeds give equal payloads.
 pub struct Noise {
     random: Random,
-    /// The command number that [`Noise::good`] used last. The Targets that a test sends to be taken have smaller
-    /// numbers.
+    /// The command number that [`Noise::good`] used last. If a test sends a Target that the server should take, the
+    /// Target has a smaller command number.
     command: u32,
 }
 

@@ -1,5 +1,5 @@
-//! The planner or the line fails: the fingers are caught, go to their end states, and follow the next planner.
-//! `cargo bench -p sun2xp-serve --bench outage` repeats each failure a hundred times.
+//! The planner or the line fails: the fingers are caught (held softly where they are), go to their end states, and
+//! follow the next planner. `cargo bench -p sun2xp-serve --bench outage` repeats each failure a hundred times.
 
 use super::outage::{CATCH_GOAL, CATCH_MS, END_GOAL, Failure, Rig};
 use super::permitted_line;

@@ -139,7 +139,7 @@ fn run(configuration: &str, motion: Motion) {
         if let Err(error) = hand.send_group(&commands)
             && !hand.is_owner()
         {
-            // Perhaps nobody reads the output any more.
+            // The write may fail, because perhaps nobody reads the output any more.
             let _ = writeln!(std::io::stdout(), "planner ends: {error}");
             return;
         }

@@ -1,4 +1,5 @@
-//! Tests who may do what, and which Targets are taken. The server runs in this process, at a loopback address.
+//! Tests what each client may do, and which Targets (the messages with set points) the server takes. The server runs in
+//! this process, at a loopback address.
 
 use super::free_port::free_port;
 use super::raw::{Files, Raw, joints};
@@ -19,7 +20,7 @@ pub fn loopback() -> String {
     format!("tcp/127.0.0.1:{}", free_port())
 }
 
-/// The table [serve.clients] for clients that may command.
+/// Returns the lines of the table [serve.clients] for clients that may command.
 pub fn clients_of(names: &[&str]) -> String {
     names.iter().map(|name| format!("{name} = \"command\"\n")).collect()
 }

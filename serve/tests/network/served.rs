@@ -1,4 +1,5 @@
-//! The program `sun2xp-serve` with a simulated hand, at the left end of a line, and its certificates.
+//! The program `sun2xp-serve` with a simulated hand and its certificates. It runs at the left end of a [`Line`], which
+//! connects two network namespaces.
 
 use super::line::Line;
 use super::observer::Observer;

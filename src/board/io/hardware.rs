@@ -1,5 +1,5 @@
-//! The hardware of a finger behind the board protocol: its states, its samples in the counts of the protocol, and its
-//! watchdog time.
+//! Presents the hardware of a finger as a board of the board protocol: keeps the states of the board, converts samples
+//! to the counts of the protocol, and checks the watchdog time.
 
 use super::finger_io::{FingerIo, IoCommand, IoFaults, IoProperties, IoSample, IoTerms};
 use super::identity::identity;
@@ -39,8 +39,8 @@ pub(super) struct Hardware {
     /// Status bits that stay set until the next Configure.
     latched: Status,
     zero_lost: bool,
-    /// Whether the last sample reported that the zero is lost. True before the first sample, because a zero that is
-    /// missing at opening was not lost on an open hand.
+    /// Whether the last sample reported that the zero is lost. True before the first sample, so that a zero that is
+    /// already missing at opening does not count as lost after opening.
     reports_lost_zero: bool,
     /// Whether the zero was lost after opening, and no start has reported it valid since.
     lost_since_open: bool,

@@ -5,7 +5,7 @@ use crate::board::protocol::{Capabilities, FirmwareVersion, Identity, VERSION};
 use crate::model::FingerNumber;
 use crate::model::configuration::Configuration;
 
-/// Largest torque limit, torque units. It leaves room for rounding below the largest 16-bit count.
+/// Largest torque limit, torque units. It is below 32767, the largest signed 16-bit count, to leave room for rounding.
 const LARGEST_LIMIT: f64 = 30_000.0;
 
 /// nN m in one N cm.

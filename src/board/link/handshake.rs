@@ -118,8 +118,8 @@ impl<T: Transport> Link<T> {
         Err(self.unidentified(address, &before, began))
     }
 
-    /// Returns why no identity arrived from this address since `began` (ns on the transport's clock), when the counters
-    /// had the values `before`.
+    /// Returns why no identity has arrived from this address since `began` (ns on the transport's clock). `before` are
+    /// the counters at that time.
     fn unidentified(&self, address: u8, before: &LinkCounters, began: u64) -> LinkError {
         let after = self.counters();
         if after.bytes == before.bytes {

@@ -37,15 +37,17 @@ impl Port {
         port.request_low_latency();
         // SAFETY: the descriptor was opened above.
         check(unsafe { libc::tcflush(port.descriptor.number(), libc::TCIFLUSH) }).map_err(set_up)?;
-        // A change of the settings is an event without bytes, for which the first wait would poll the port. So the port
-        // is watched only after the change.
+        // A change of the settings is an event, although no bytes arrive. If the port were watched before the change,
+        // this event would make the first wait poll the port, which may take long (input.rs). So the port is watched
+        // only after the change.
         port.input.watch(&port.descriptor).map_err(failed)?;
         Ok(port)
     }
 
     /// Keeps other programs out with TIOCEXCL and flock. TIOCEXCL does not stop a program that runs as root. flock also
-    /// stops such a program, if that program locks the port itself. TIOCEXCL marks the port and not the descriptor, and
-    /// also succeeds at a port that another program has locked. flock therefore comes first.
+    /// stops such a program, if that program locks the port itself. flock comes first, because TIOCEXCL also succeeds
+    /// at a port that another program has locked. Its mark would then stay there, because TIOCEXCL marks the port and
+    /// not the descriptor.
     fn lock(&mut self) -> Result<(), PortError> {
         let failed = |source| PortError::at_opening(&self.path, source);
         // SAFETY: the descriptor is open; neither call takes a pointer.

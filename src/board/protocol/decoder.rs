@@ -31,7 +31,8 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Consumes `bytes` from the front until a frame is complete. Returns `None` when all bytes are consumed.
+    /// Consumes `bytes` from the front until a valid frame is complete. Returns `None` if all bytes are consumed and no
+    /// valid frame is complete.
     pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Packet<'_>> {
         let mut frame_length = None;
         while let Some((&byte, rest)) = bytes.split_first() {

@@ -73,7 +73,7 @@ pub struct FirmwareVersion(pub [u8; 3]);
 pub struct Capabilities(pub u32);
 
 impl Capabilities {
-    /// The end state *hold*.
+    /// The board supports the end state *hold*.
     pub const HOLD: Capabilities = Capabilities(1 << 0);
     /// Encoder counts survive the loss of power, or the encoders are absolute.
     pub const KEEPS_ZERO: Capabilities = Capabilities(1 << 1);

@@ -1,5 +1,5 @@
-//! The frames of the board protocol. This module has no input or output, no clock and no heap. The specification is
-//! `docs/board-protocol.md`.
+//! The frames of the board protocol. This module has no input or output and no clock, and its codec does not use the
+//! heap. The specification is `docs/board-protocol.md`.
 
 mod command;
 mod configure;

@@ -27,8 +27,8 @@ pub(super) const STROKES: usize = 5;
 const DIRECTIONS: usize = 2;
 /// Number of Gauss-Newton steps. The equations are nearly linear.
 const ROUNDS: usize = 5;
-/// Weight of the assumption that all pulleys have the same friction, N cm. It decides only where the motions do not
-/// distinguish the tendons.
+/// Weight of the assumption that all pulleys have the same friction, N cm. The assumption matters only if the motions
+/// do not distinguish the friction of the four tendons.
 const LIKENESS: f64 = 0.3;
 /// Weight of the configured viscous friction, rad/s. The motions determine C more accurately than b.
 const KNOWN: f64 = 0.2;
@@ -191,7 +191,8 @@ fn directions(instruments: &Instruments, stroke: &Stroke) -> Vector4<f64> {
     speeds.map(|speed| if speed.abs() > least { speed.signum() } else { 0.0 })
 }
 
-/// Returns the tensions at the joints, N, on the way back and forth, in the scale of the gauges.
+/// Returns the tensions at the joints, N, on the way back and on the way forth. The gains of the gauges are not
+/// applied.
 fn at_joint(
     instruments: &Instruments,
     stroke: &Stroke,

@@ -23,7 +23,7 @@ impl<const N: usize> LeastSquares<N> {
         self.count += 1.0;
     }
 
-    /// Returns a and the rms residual, or `None` if the samples do not determine a.
+    /// Returns the vector a and the rms residual, or `None` if the samples do not determine the vector.
     pub fn solve(&self) -> Option<(SVector<f64, N>, f64)> {
         // The matrix is scaled to a unit diagonal, so that one bound is valid for all units.
         let scale = self.matrix.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 0.0 });

@@ -14,11 +14,12 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 /// The configured moment arms stay if each differs from the measured one by at most this part of the largest moment arm
 /// of its joint. On the simulated finger the measurement is accurate to 0.3 %.
 pub(super) const SIGNIFICANT: f64 = 0.01;
-/// Largest plausible difference, as a part of the largest moment arm of the joint.
+/// Largest plausible difference between a configured and a measured moment arm, as a part of the largest moment arm of
+/// the joint.
 const LARGEST: f64 = 0.2;
-/// Largest plausible difference between a joint's range that is computed with the configured moment arms and its
-/// configured range, as a part of the configured range. A larger difference means that something blocks the joint, or
-/// that its stops are not where they are configured.
+/// Largest plausible difference between the measured and the configured range of a joint, as a part of the configured
+/// range. The measured range is computed from the motor travel with the configured moment arms. A larger difference
+/// means that something blocks the joint, or that its stops are not where they are configured.
 const RANGE: f64 = 0.08;
 
 /// Mean readings of a finger at rest.
@@ -51,8 +52,8 @@ pub(super) struct MomentArmsFound {
 }
 
 impl MomentArms {
-    /// Returns the uncertainty of the moment arms, as a part of the largest moment arm of their joint: half of the
-    /// difference between the arms that the motions up and down give.
+    /// Returns the largest uncertainty of a moment arm, as a part of the largest moment arm of its joint. The
+    /// uncertainty is half of the difference between the arms that the motions up and down give.
     pub fn uncertainty(
         &self,
         instruments: &Instruments,

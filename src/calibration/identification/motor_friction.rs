@@ -70,8 +70,8 @@ impl MotorFriction {
             }
             friction.coulomb[motor] = coulomb.max(0.0);
             friction.conduit[motor] = conduit.max(0.0);
-            // A conduit multiplies the tension by 1 + mu while winding in and divides it by 1 + mu while letting out,
-            // so the geometric mean of both pulls is free of friction.
+            // A conduit multiplies the pull by a factor of about 1 + mu while winding in, and divides it by the same
+            // factor while letting out. So the geometric mean of both pulls is free of friction.
             friction.ratio[motor] = ((a + conduit) * (a - conduit)).sqrt();
         }
         Ok(friction)

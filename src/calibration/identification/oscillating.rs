@@ -13,9 +13,9 @@ use crate::calibration::step::Sample;
 use nalgebra::{Vector3, Vector4};
 use std::f64::consts::TAU;
 
-/// The two frequencies, Hz. The higher one comes first, because heavy rotors reach a smaller amplitude there, and the
-/// lower one is given the same amplitude. They are well above the resonance of the rotors with their tendons: 17 Hz on
-/// the default finger. At higher frequencies a lag of the amplifiers matters more.
+/// The two frequencies, Hz. Heavy rotors reach a smaller amplitude at the higher frequency. It comes first, so that the
+/// lower frequency can be given the same amplitude. Both are well above the resonance of the rotors with their tendons:
+/// 17 Hz on the default finger. At higher frequencies a lag of the amplifiers matters more.
 const FREQUENCIES: [f64; 2] = [60.0, 40.0];
 /// Smallest number of servo cycles in a period of the oscillation. At a lower servo rate, the inertia is not measured.
 const LEAST_CYCLES: f64 = 7.5;
@@ -29,11 +29,11 @@ const SWING: f64 = 0.4;
 /// Largest amplitude of the commanded common tension as a part of its mean. It may exceed 1, because heavy rotors
 /// hardly follow the command.
 const LARGEST: f64 = 1.4;
-/// Growth of the amplitude of the commanded common tension from one period to the next, as a part of its mean.
+/// Growth of the commanded amplitude in each period, as a part of the mean common tension.
 const GROWTH: f64 = 0.04;
 /// Duration of the motion of the joints, s: that of settling and measurement at both frequencies.
 const MOVING: f64 = 1.2;
-/// Periods before the measurement, in which the amplitude no longer changes, and periods of the measurement.
+/// Number of periods with constant amplitude before the measurement, and number of periods in the measurement.
 const SETTLING: usize = 5;
 const MEASURED: usize = 24;
 
@@ -122,7 +122,8 @@ impl Oscillating {
         false
     }
 
-    /// Returns the inertia of every rotor, kg m^2, that was found. `ratio` is the ratio of commanded pull to tension.
+    /// Returns the inertia of each rotor, kg m^2; none if it was not found. `ratio` is the ratio of commanded pull to
+    /// tension.
     pub fn inertia(&self, instruments: &Instruments, ratio: &Vector4<f64>) -> [Option<f64>; 4] {
         let motors = Motors { ratio: *ratio, radius: instruments.radius, count: instruments.cm_per_count().abs() };
         inertia(&self.measured, &motors, instruments.period)

@@ -35,7 +35,8 @@ impl Pressing {
         let base = distribute(&holding);
         let common = base + instruments.pretension * ((hardest - base.max()) / instruments.pretension.max()).max(0.0);
         let press = |joint: usize| {
-            // The largest torque is selected in steps of 1 N cm. The tensions rise with the torque.
+            // Selects, in steps of 1 N cm, the largest torque whose tensions are at most `hardest`. The search ends at
+            // the first torque with a higher tension, because the tensions rise with the torque.
             let tensions = (0..100).map(|more| {
                 let mut torques = holding;
                 torques[joint] -= f64::from(more);

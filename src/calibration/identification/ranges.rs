@@ -112,8 +112,9 @@ impl Ranges {
         Ok(None)
     }
 
-    /// Presses the joints at rest against their lower stops with the full torque. Their anchors are set anew in every
-    /// cycle, because their measured angles drift while another joint moves: the moment arms are not known yet.
+    /// Presses the joints at rest against their lower stops with the full torque. [`JointGuide`] pulls each joint
+    /// toward an anchor. The anchors of the joints at rest are set anew in every cycle, because the measured angles of
+    /// these joints drift while another joint moves: the moment arms are not known yet.
     fn press(&self, guide: &mut JointGuide) {
         let moving = match self.stage {
             Stage::ReadLower => None,

@@ -95,8 +95,8 @@ impl Identification {
         elasticity: &StiffnessFound,
         instruments: &Instruments,
     ) -> Tolerances {
-        // The friction of a conduit is the ratio of a pull of the motor to a tension at the gauge, so it depends on the
-        // scale. The other terms are ratios of values in one scale.
+        // The friction of a conduit is a pull of the motor divided by a tension at the gauge, so it depends on the
+        // scale of the gauges. The other terms are ratios of values in one scale.
         let conduit = motors.conduit / self.scale(motors);
         let friction = (conduit + free.pulley).max().max(elasticity.rubbing / SHARE_OF_FRICTION);
         let moment_arms = self.moment_arms.map(|arms| {

@@ -72,8 +72,8 @@ impl Oscillation {
     }
 
     /// Adds the changes of pull, N, tension, N, and travel, cm, since the previous sample. The pull of a sample is the
-    /// one that is commanded from this sample to the next one. Unlike the values, their changes do not contain the
-    /// trend of a finger that moves.
+    /// one that is commanded from this sample to the next one. The motion of the finger adds a trend to the values. To
+    /// their changes it adds only a constant, which the sums over whole periods eliminate.
     pub fn add(&mut self, phase: f64, changes: &[Vector4<f64>; 3]) {
         self.samples += 1.0;
         for (harmonic, change) in [&mut self.pull, &mut self.tension, &mut self.travel].into_iter().zip(changes) {

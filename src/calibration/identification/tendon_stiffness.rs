@@ -45,8 +45,8 @@ pub(super) struct TendonStiffness {
 pub(super) struct StiffnessFound {
     /// Mean stiffness in the range of tensions in which the controller works, N/cm.
     pub stiffness: Vector4<f64>,
-    /// Largest relative difference between the local compliance, which depends on the tension, and the mean compliance,
-    /// which is the inverse of `stiffness`, plus the uncertainties `UNCERTAIN` and `unexplained`. At most 1.
+    /// Sum of `UNCERTAIN`, `unexplained` and the largest relative difference between the local compliance, which
+    /// depends on the tension, and the mean compliance, which is the inverse of `stiffness`. At most 1.
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,

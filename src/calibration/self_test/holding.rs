@@ -28,15 +28,15 @@ const RAISING: f64 = 0.12;
 const PULSE: f64 = 2.0;
 /// Duration of a pulse, s.
 pub(super) const LENGTH: f64 = 0.006;
-/// The gauges are read in this time after the beginning of a pulse, s: late enough for the motor to move, and too early
-/// for the links.
+/// The gauges are read between these two times after the beginning of a pulse, s: late enough for the motor to move,
+/// but too early for the links to move.
 const RESPONSE: (f64, f64) = (0.003, 0.009);
 /// Time before a pulse, s, in which the vibrations of the links decay.
 const QUIET: f64 = 0.12;
 /// At the beginning of [`QUIET`], the motor winds in until it has moved by the first value, cm, but no longer than the
 /// second value, s. Its friction then does not delay the pulse.
 const LOOSENED: (f64, f64) = (0.001, 0.05);
-/// All gauges are read again in this time after the beginning of a pulse, s, when the links begin to move.
+/// All gauges are read again between these two times after the beginning of a pulse, s, when the links begin to move.
 pub(super) const LATE: (f64, f64) = (0.005, 0.012);
 /// Time from the cycle that commands a pulse to the motor's torque, in periods.
 const DELAY: f64 = 1.5;
@@ -171,7 +171,7 @@ impl Holding {
         if since > 0.0 && since <= LENGTH { PULSE * instruments.minimum } else { 0.0 }
     }
 
-    /// Winds every motor in until it pulls as strongly as the pretension and its friction demand.
+    /// Winds every motor in until its pull reaches the sum of its pretension and its friction.
     fn tighten(
         &mut self,
         instruments: &Instruments,

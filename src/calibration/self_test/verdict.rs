@@ -7,8 +7,8 @@ use crate::model::LinkDynamics;
 use nalgebra::{Vector3, Vector4};
 
 /// All rises are compared as fractions of the expected rise. The usual rise is the mean of the middle two of the four
-/// gauges. A gauge is dead if its rise is less than this part of the usual rise. If the usual rise is less than this
-/// value, this value replaces it, so that dead gauges are also found if most gauges are dead.
+/// gauges. A gauge is dead if its rise is less than `DEAD` times the usual rise. A usual rise below `DEAD` counts as
+/// `DEAD`, so that dead gauges are also found if most gauges are dead.
 const DEAD: f64 = 0.12;
 /// For each of two motors, take the response of the other motor's gauge minus the response of its own gauge, both
 /// divided by the largest response to this motor. The two gauges count as swapped if the sum of both differences
@@ -16,15 +16,16 @@ const DEAD: f64 = 0.12;
 const LEADING: f64 = 0.15;
 /// A gauge is reported if its rise differs from the usual rise by more than this fraction: its scale is wrong.
 const SCALE: f64 = 0.13;
-/// Step of the prediction of a pulse, s. The links vibrate at frequencies up to 80 Hz.
+/// Time step of `predicted`, s. It must be short, because the links vibrate at frequencies up to 80 Hz.
 const STEP: f64 = 0.000_25;
 /// N cm s^2 in one kg m^2.
 const CENTIMETRES: f64 = 100.0;
-/// Two tendons differ at rest if the logarithm of the ratio of their pretensions exceeds this value.
+/// The pretensions distinguish two tendons if the logarithm of the ratio of the pretensions exceeds this value in
+/// magnitude.
 const DIFFERENT: f64 = 0.2;
 
-/// Returns the first thing that is wrong as an error: a dead gauge, swapped gauges or tendons, a reversed gauge, or a
-/// gauge with a wrong scale. `travel` is the travel of the motors from their zeros, cm.
+/// Returns an error that names the first thing that is wrong: a dead gauge, swapped gauges or tendons, a reversed
+/// gauge, or a gauge with a wrong scale. `travel` is the travel of the motors from their zeros, cm.
 pub(super) fn judge(
     responses: &Responses,
     instruments: &Instruments,
@@ -111,7 +112,7 @@ fn predicted(instruments: &Instruments, dynamics: &LinkDynamics, joints: &Vector
     while seconds < LATE.1 {
         seconds += STEP;
         let mut travel = -(r.transpose() * angles);
-        // The motor accelerates during the pulse, and continues after it.
+        // The motor accelerates during the pulse, and keeps its speed after the pulse.
         travel[tendon] += match seconds < LENGTH {
             true => 0.5 * seconds * seconds,
             false => LENGTH * (seconds - 0.5 * LENGTH),

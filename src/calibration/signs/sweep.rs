@@ -1,4 +1,4 @@
-//! The readings of one motor that turns back and forth.
+//! Reads the gauges while one motor turns back and forth.
 
 use crate::calibration::average::Average;
 use nalgebra::Vector4;

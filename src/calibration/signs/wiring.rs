@@ -9,7 +9,7 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// Pull of a pulse, in t_min.
+/// Pull of a pulse, in multiples of t_min (`tendon.minimum`).
 const PULSE: f64 = 2.0;
 /// Duration of a pulse, s.
 const LENGTH: f64 = 0.006;

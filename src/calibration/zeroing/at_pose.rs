@@ -12,7 +12,8 @@ use nalgebra::{Vector3, Vector4};
 use std::ops::ControlFlow::Break;
 
 impl Zeroing {
-    /// Reads the joint angles of a finger that was limp at the beginning, before [`Grip`] pushes its joints.
+    /// Reads the joint angles before [`Grip`] pushes the joints. This step runs if the finger was limp when the zeroing
+    /// began.
     pub(super) fn read_held(
         &mut self,
         mut guide: JointGuide,
@@ -72,9 +73,10 @@ impl Zeroing {
         // The instruments have already subtracted the offsets of the gauges.
         let none = Vector4::zeros();
         let at_rest = reading.joints(instruments, &none);
-        // The new zeros correct the error that the joint angles had during the swing. `reading` contributes only the
-        // common travel by which the motors have wound in all tendons. Stretch is counted from the pretension, at
-        // which the finger is now, so an error of the configured tendon stiffness does not change this travel.
+        // `joints` were measured during the [`Swing`], in which all tensions rise and fall together. The new zeros
+        // correct the error of these angles. `reading` contributes only the common travel by which the motors have
+        // wound in all tendons. Stretch is counted from the pretension, at which the finger is now, so an error of the
+        // configured tendon stiffness does not change this travel.
         let too_far = joints - self.pose;
         let zeros = reading.zeros(instruments, &none, &(at_rest - too_far), self.configured);
         Ok(Break(self.findings(instruments, zeros, too_far, None)))

@@ -22,9 +22,9 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// Creates a reading while the tensions rise and fall. Motors may tremble then. The mean values of the reading are
-    /// free of this motion, so the check that the joints stand still filters it out with the longer time constant
-    /// [`SWINGING`].
+    /// Creates a reading during which the tensions rise and fall. Motors may tremble then. The mean values of the
+    /// reading are free of this motion, so the check that the joints stand still filters it out with the longer time
+    /// constant [`SWINGING`].
     pub fn swinging() -> Self {
         Self { standstill: Standstill::new(SWINGING), ..Self::default() }
     }

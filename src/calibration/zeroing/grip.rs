@@ -25,7 +25,7 @@ pub(super) struct Grip {
     start: Vector3<f64>,
     /// Number of the push, which selects joint and direction: 0 to 5, or 6 after the last push.
     push: usize,
-    /// Time since the push reached the full torque, or since the end of the last push, s.
+    /// Time for which the push has had the full torque, or, after push 5, the time since its end, s.
     seconds: f64,
 }
 
@@ -37,7 +37,7 @@ impl Grip {
     }
 
     /// Runs one cycle. Returns the activity, and whether all joints were pushed and the finger is at rest again.
-    /// `speed` is the speed of the pushes, rad/s.
+    /// `speed` is the speed with which the guide's anchors move toward their targets, rad/s.
     pub fn step(
         &mut self,
         instruments: &Instruments,

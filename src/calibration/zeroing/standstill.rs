@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_and_oscillation_do_not_count_as_motion() {
+    fn oscillation_and_slow_drift_do_not_count_as_motion() {
         assert_eq!(moved(|_| 0.5), None);
         assert_eq!(moved(|seconds| 0.5 + 0.005 * (seconds * 600.0).sin()), None);
         assert_eq!(moved(|seconds| 0.5 + 0.012 * seconds), None);

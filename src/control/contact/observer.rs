@@ -85,9 +85,9 @@ impl ContactObserver {
         self.observer.r == other.observer.r
     }
 
-    /// Advances the estimate to the sample in `report`, and writes the estimate to the report. The finger must follow a
-    /// set point. `weight` returns the torques of gravity at joint angles, N cm. `elapsed` is the time since the
-    /// previous sample, s.
+    /// If the next sample is due, computes it from the joint angles and tensions in `report`, and writes the estimate
+    /// to the report. The finger must follow a set point. `weight` returns the torques of gravity at joint angles,
+    /// N cm. `elapsed` is the time since the previous measurement, s.
     pub fn follow(
         &self,
         state: &mut ContactState,

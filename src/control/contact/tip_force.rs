@@ -20,7 +20,8 @@ pub(super) struct TipForce {
     reach: f64,
     /// Inverse of `reach`, 1/cm.
     normal: f64,
-    /// Motion of the tip in the plane, away from the axis of joint 0 and along y, per angle of joints 1 and 2, cm/rad.
+    /// Jacobian in the plane of the finger, cm/rad. The rows are the motion of the tip away from the axis of joint 0,
+    /// and its motion along y. The columns are joints 1 and 2.
     plane: Matrix2<f64>,
     /// Transposed inverse of `plane`, 1/cm.
     inverse: Matrix2<f64>,

@@ -29,13 +29,13 @@ use nalgebra::{Vector3, Vector4};
 /// Fraction of t_min from which a tendon counts as tight.
 const TIGHT: f64 = 0.8;
 
-/// The reason to refuse a configuration in which a joint would have no stiffness. An R whose rank is below 3 is refused
-/// for another reason.
+/// The reason to refuse a configuration in which a joint would have no stiffness. A matrix `geometry.r` whose rank is
+/// below 3 is refused for another reason.
 const NO_STIFFNESS: &str = "gives at least one joint no stiffness: set every entry to a number above 0";
 
 impl Controller {
     /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
-    /// the rate. Returns an error that names the key to correct if the controller cannot use the values.
+    /// the rate. If the controller cannot use the values, returns an error that names the key to correct.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }

@@ -66,7 +66,7 @@ impl Controller {
         State { heat: state.heat.if_finite(), ..self.start(feedback) }
     }
 
-    /// Cools the motors of a finger whose motors have had no torque for a time, s.
+    /// Lowers the heat of motors that have had no torque for `time`, s.
     pub fn cool(&self, state: &mut State, time: f64) {
         self.heating.cool(&mut state.heat, time);
     }

@@ -1,4 +1,5 @@
-//! Runs all detectors of a finger. The servo calls them in each cycle that has a reply and follows a set point.
+//! Runs all detectors of a finger. The servo calls them in each cycle that has a reply and in which the finger follows
+//! a set point.
 
 use super::arrival::{Arrival, ArrivalDetector, ArrivalState};
 use super::contact_edges::{ContactBefore, ContactEdges};
@@ -23,7 +24,7 @@ pub struct Detectors {
 #[derive(Clone, Copy, Debug)]
 pub struct DetectorState {
     contact: ContactBefore,
-    /// For each tension, the bound that it is beyond, the upper or the lower one; none if it is within both.
+    /// For each tension, the bound that it crossed last, until it is back inside by the hysteresis; otherwise none.
     tensions: [Option<Side>; 4],
     /// Whether each joint is at a limit.
     joints: [bool; 3],

@@ -35,8 +35,8 @@ pub struct Observation {
     pub values: [f64; 4],
 }
 
-/// The largest number of observations in one cycle. No cycle has more: every detector makes at most one observation of
-/// each kind for each part.
+/// Capacity of the list of observations. A cycle has at most 13 observations, because every detector makes at most one
+/// observation of each kind for each part.
 const MOST: usize = 24;
 
 /// The observations of a cycle, in a list of fixed size, because the servo must not allocate.

@@ -5,8 +5,9 @@ use crate::control::signals::Report;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredEvents;
 
-/// A tension beyond a bound must move back inside the bound by this fraction of the bound before the detector observes
-/// it again. The fraction covers the noise of the gauges and the dither.
+/// After a tension has crossed a bound, the detector observes the next crossing of this bound only if the tension has
+/// meanwhile moved back inside by this fraction of the bound, or has crossed the other bound. The fraction covers the
+/// noise of the gauges and the dither.
 const HYSTERESIS: f64 = 0.05;
 
 /// Smallest hysteresis, N.
@@ -21,7 +22,8 @@ pub(super) struct TensionBounds {
     below: Option<f64>,
 }
 
-/// The bound that a tension is beyond. A tendon that tears can go from one bound to the other between two samples.
+/// The bound that a tension is beyond. If a tendon tears, its tension can go from above the upper bound to below the
+/// lower bound between two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Side {
     Above,

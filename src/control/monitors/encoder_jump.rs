@@ -11,7 +11,8 @@ use std::f64::consts::TAU;
 /// the maximum tension of its tendon and the rotor inertia.
 const MARGIN: f64 = 1.25;
 
-/// Additional tolerance, counts. Two differences of counts have four ends, and the last bit may flicker at each.
+/// Additional tolerance, counts. The check compares two differences of two counts each, and the last bit of each count
+/// may flicker.
 const FLICKER: f64 = 4.0;
 
 /// Shortest interval over which a speed is measured, as a fraction of a period. A late cycle is followed immediately by

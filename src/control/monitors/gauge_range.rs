@@ -17,7 +17,7 @@ const BELOW_ZERO: f64 = 0.5;
 /// tension. If it reaches the end from a lower tension, it has jumped there and is defective.
 const PULLED: f64 = 0.5;
 
-/// Time for which a gauge must be out of range, or a tension too large, s.
+/// A gauge that is out of range, or a tension that is too large, raises an alarm after this time, s.
 const DURATION: f64 = 0.004;
 
 #[derive(Clone, Debug)]

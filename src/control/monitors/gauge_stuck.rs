@@ -141,8 +141,8 @@ impl Flicker {
 }
 
 impl Memory {
-    /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference has changed its
-    /// sign, with at least [`BEND`] before and after the change.
+    /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference and the
+    /// previous one have opposite signs and magnitudes of at least [`BEND`].
     fn bends_to_the_other_side(&mut self, gauge: usize, change: i32) -> bool {
         let [first, second] = self.differences[gauge];
         self.differences[gauge] = [change, change - first];

@@ -1,5 +1,5 @@
 //! The monitors detect faults of tendons, gauges, encoders, motors and joints from the measurements and commands of a
-//! cycle. Each monitor has one file, which defines the fault.
+//! cycle. Each monitor has a file of its own, which defines how the monitor recognises its faults.
 //!
 //! The monitors run while a finger follows a set point. Taking up slack, calibration and release can cause the same
 //! symptoms without a fault.

@@ -29,8 +29,8 @@ const GONE: f64 = 0.1;
 /// parameters.
 const MISSED: f64 = 0.3;
 
-/// If the mean of the missing tension (see [`MISSED`]) is positive, the rise from which the missing tension counts is
-/// larger by this fraction of the mean. A positive mean shows that the configuration indicates too much stretch. The
+/// If the mean of the missing tension (see [`MISSED`]) is positive, the missing tension must rise further by this
+/// fraction of the mean before it counts. A positive mean shows that the configuration indicates too much stretch. The
 /// configuration indicates even more stretch when the tensions of the other tendons rise.
 const INEXACT: f64 = 0.5;
 
@@ -64,7 +64,7 @@ pub(super) struct TensionLost {
     low: f64,
     /// Tension below which the tension of a tendon is gone, N.
     gone: f64,
-    /// Rise from which the missing tension counts, N (see [`MISSED`]).
+    /// Rise above which the missing tension of a low tendon counts, N (see [`MISSED`]).
     missed: f64,
 }
 

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_low_tension_after_an_adjustment_is_not_lost() {
+    fn a_low_tension_after_an_adjustment_is_no_loss_of_tension() {
         let finger = ConfiguredFinger::default();
         let monitors = Monitors::new(&finger, &finger.tendons().expect("the default tendons"), 1000.0, 0.0);
         let (mut watch, feedback, report) = (Watch::default(), Feedback::default(), Report::default());

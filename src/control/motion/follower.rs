@@ -14,7 +14,7 @@ pub struct TimedStiffness {
     pub kx: Matrix3<f64>,
 }
 
-/// A path in joint angles, rad, in the order of time.
+/// A path in joint angles, rad. Its pieces and its stiffnesses are in the order of time.
 #[derive(Clone, Copy, Debug)]
 pub struct PathTable<'a> {
     /// The pieces. There is at least one.

@@ -6,8 +6,8 @@
 //! constant rate. Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one
 //! and a half periods of the planner.
 //!
-//! A polynomial to each new set point with an estimated final rate would have a smaller delay. It was rejected, because
-//! it overshoots the last set point when a planner stops sending.
+//! A polynomial that reaches each new set point at an estimated rate would have a smaller delay. It was rejected,
+//! because it overshoots the last set point when a planner stops sending.
 
 use crate::control::motion::Motion;
 use crate::control::spring::slew::Slew;

@@ -1,4 +1,4 @@
-//! Conversion of encoder counts to motor angles, eq. 28, and of strain gauge counts to tensions.
+//! Conversion of encoder counts to motor angles (eq. 28 of COINS TR 90-48), and of strain gauge counts to tensions.
 
 use crate::control::number_checks::{positive, signs};
 use crate::control::signals::{Feedback, Measured};
@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 /// Scales, signs and zeros of the eight sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SensorScales {
-    /// 2 pi / 2000 of eq. 28, with the sign of the encoder.
+    /// The factor 2 pi / 2000 of eq. 28, with the configured counts per revolution instead of 2000, and with the sign
+    /// of the encoder.
     radians_per_count: [f64; 4],
     /// m_0 of eq. 28.
     encoder_zero: [i32; 4],

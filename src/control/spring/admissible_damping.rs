@@ -24,7 +24,7 @@ const SLOW: f64 = 1000.0;
 /// the bound of Kx.
 ///
 /// For a finger with other links or tendons, the stiffness is first converted to a stiffness of the default finger.
-/// Both stiffnesses are the same fraction of the stiffness that the tendons of their finger support.
+/// Each of the two stiffnesses is the same fraction of the stiffness that the tendons of its own finger support.
 ///
 /// The admitted pairs of stiffness and damping are not a convex set, because a ratio of 1 is admitted beyond the
 /// straight lines. So the ratio can be outside its range during a transition between two springs. With the default

@@ -1,4 +1,5 @@
-//! The stiffness that a pose supports: a finger cannot be stiffer than its tendons.
+//! The stiffness that a pose supports: a finger cannot be stiffer than its tendons. K_theta is the commanded stiffness
+//! of the joints. R k R^T is the stiffness with which the tendons hold the joints while the motors are locked.
 
 use crate::control::eigenvalues::eigenvalues;
 use crate::model::Tendons;

@@ -1,10 +1,10 @@
-//! A soft spring and damper in joint space. It holds or leads a finger for which no stiffness has been commanded.
+//! A soft spring and damper in joint space. It holds or leads a finger during a calibration.
 
 use crate::model::Links;
 use nalgebra::Vector3;
 
-/// Stiffness of each joint, N cm/rad. It is below the range for which the tendon controllers are tuned: in a bent
-/// finger, even the softest spring of that range makes the joints stiffer than `HOLDING_STIFFNESS`.
+/// Stiffness of each joint, N cm/rad. The joints of a bent finger are stiffer even with the softest Kx for which the
+/// tendon controllers are tuned.
 pub(crate) const HOLDING_STIFFNESS: f64 = 30.0;
 
 /// Damping of a joint, N cm s/rad for each cm of finger between the joint and the tip. It keeps the inertia of the

@@ -49,7 +49,7 @@ impl JointSpring {
         self.torque += (target.torque - self.torque) * part;
     }
 
-    /// Returns whether no entry is larger than `least`, N cm/rad and N cm.
+    /// Returns whether all entries of K_theta, N cm/rad, and of the torque, N cm, have magnitudes of at most `least`.
     pub(crate) fn is_below(&self, least: f64) -> bool {
         self.k_theta.amax() <= least && self.torque.amax() <= least
     }

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// The springs of one finger: the spring of the set point, the spring that holds joint 0 while the tip is near the axis
 /// of this joint, and the soft joint limits. The same stiffness is computed for every controller, and for both values
-/// of `controller.law`. For the report's law it is the true stiffness only at small deflections.
+/// of `controller.law`. It is the true stiffness of the joints only at small deflections.
 #[derive(Clone, Debug)]
 pub struct JointSprings {
     joint_stiffness: JointStiffness,
@@ -17,8 +17,8 @@ pub struct JointSprings {
 }
 
 impl JointSprings {
-    /// Constructs the springs of `finger` at `rate`, Hz. Returns None if R cannot be used. No controller accepts
-    /// such an R.
+    /// Constructs the springs of `finger` at `rate`, Hz. Returns None if the moment arms R of the tendons cannot be
+    /// used. No controller accepts such an R.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Option<Self> {
         let admissible = AdmissibleStiffness::new(finger, &finger.tendons().ok()?, rate)?;
         Some(Self {

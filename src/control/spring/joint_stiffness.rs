@@ -23,9 +23,8 @@ const LEAST_LEVER: f64 = 0.5;
 /// default finger, 5 degrees.
 const STRAIGHT: f64 = 0.08;
 
-/// Stiffness of the joint spring that leads the finger through the straight pose, divided by the diagonal of K_theta.
-/// The joint spring has no coupling between the joints. With a factor of 1, the joint spring could be stiffer than the
-/// pose supports.
+/// Stiffness of the joint spring, divided by the diagonal of K_theta. [`JointStiffness`] describes this spring, which
+/// has no coupling between the joints. With a factor of 1, the joint spring could be stiffer than the pose supports.
 const LEADING: f64 = 0.5;
 
 /// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d, and the relative
@@ -43,11 +42,11 @@ const LEADING: f64 = 0.5;
 /// stiffness n^T K n (rho^2 - r^2). n is the direction in which the joint moves the tip. The stiffness starts from zero
 /// at r = rho, and is zero if K has no stiffness along n.
 ///
-/// There are two laws. The report's law is K_theta (theta_d - theta), and the exact law is J^T f with the deflection of
-/// the tip itself. A tip position has two joint solutions, which bend joint 2 to opposite sides, and the exact law does
-/// not distinguish them. While joint 2 is bent to the opposite side from theta_d, a spring between the joint angles and
-/// theta_d therefore replaces the spring of the exact law. This joint spring has no singular pose, and leads the finger
-/// through the straight pose.
+/// There are two laws. The report's law is K_theta (theta_d - theta). The exact law is J^T f, where f is K times the
+/// deflection of the tip itself. A tip position has two joint solutions, which bend joint 2 to opposite sides, and the
+/// exact law does not distinguish them. While joint 2 is bent to the opposite side from theta_d, a spring between the
+/// joint angles and theta_d therefore replaces the spring of the exact law. This joint spring has no singular pose, and
+/// leads the finger through the straight pose.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -101,7 +100,7 @@ impl JointStiffness {
     }
 
     /// Returns tau of the spring alone, N cm. The report's law is K_theta (theta_d - theta), eqs. 3 and 6. The exact
-    /// law is J^T f, eqs. 1 and 2, with the deflection of the tip itself.
+    /// law is J^T f, eqs. 1 and 2, where f is K times the deflection of the tip itself.
     pub fn spring(&self, spring: &Spring, joints: &Vector3<f64>) -> Vector3<f64> {
         self.posed(spring, joints).torques(&spring.joints)
     }

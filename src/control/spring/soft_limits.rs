@@ -3,7 +3,7 @@
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// Stiffness of a limit where the tendons support it, N cm/rad. A bent finger at 3 N/cm has about this stiffness.
+/// Stiffness of a limit, N cm/rad, if the tendons can support it. A bent finger at 3 N/cm has about this stiffness.
 const STIFFNESS: f64 = 150.0;
 
 /// Largest fraction of a joint's admissible stiffness that the joint's limits may use. With this fraction, some

@@ -161,10 +161,10 @@ fn link_dynamics(finger: &ConfiguredFinger) -> Result<LinkDynamics, Unusable> {
     Ok(LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros()))
 }
 
-/// Returns the dither of the tensions. `highest` is the largest tension of each tendon, N. After a fast motion, the
-/// dither is larger for a short time, the burst. A burst lowers no desired tension to less than `lowest`, N. `lowest`
-/// is t_min plus the largest amplitude by which the dither of the joints changes a tension. It contains no reserve for
-/// the noise of the gauges, because a burst is short.
+/// Returns the dither of the tensions. `highest` is the largest permitted tension of each tendon minus the upper
+/// reserve, N. After a fast motion, the dither is larger for a short time, the burst. A burst lowers no desired tension
+/// to less than `lowest`, N. `lowest` is t_min plus the largest amplitude by which the dither of the joints changes a
+/// tension. It contains no reserve for the noise of the gauges, because a burst is short.
 fn tension_dither(
     finger: &ConfiguredFinger,
     numbers: &Numbers,

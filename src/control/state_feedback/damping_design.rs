@@ -47,8 +47,8 @@ fn inverse(matrix: &Matrix3<f64>) -> Matrix3<f64> {
         / a.dot(&b.cross(&c))
 }
 
-/// Returns the square root of a matrix with positive eigenvalues, by the theorem of Cayley and Hamilton. It has no
-/// iteration, so it always takes the same time.
+/// Returns the square root of a matrix with positive eigenvalues, by the theorem of Cayley and Hamilton. The
+/// computation has no iteration, so it always takes the same time.
 fn square_root(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let square = matrix * matrix;
     let [a, b, c] = eigenvalues(matrix);

@@ -121,7 +121,7 @@ impl StateFeedback {
             speeds,
             disturbances: of(|motion| motion.disturbance),
             joints: self.pseudo_inverse.tr_mul(&of(|motion| motion.travel)),
-            // The observers have just computed them from the same speeds.
+            // The observers have just computed these rates from the same `speeds`.
             rates: state.joint_rates,
         }
     }
@@ -193,8 +193,8 @@ impl StateFeedback {
         JointTorques { sprung, k_theta, all }
     }
 
-    /// Returns the feed-forward of the joints' Coulomb friction, N m. Its slope is limited to a fraction of the
-    /// damping.
+    /// Returns the feed-forward of the joints' Coulomb friction, N m. Around zero speed it is proportional to the
+    /// speed, with a fraction of the damping as the factor.
     fn joint_friction(
         &self,
         state: &mut StateFeedbackState,

@@ -9,14 +9,14 @@ use super::full_rate::FULL_RATE;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Rate of the reference, rad/s, from which a motion is fast. A slow motion causes no burst: bursts would follow each
-/// other, and a grasp that tightens slowly would slip.
+/// Rate of the reference, rad/s, from which a motion is fast. A slow motion causes no burst. Otherwise bursts would
+/// follow each other, and a grasp that tightens slowly would slip.
 pub(super) const FAST: f64 = 0.4;
 /// Rate of the reference, rad/s, below which a fast motion has ended.
 pub(super) const SLOW: f64 = 0.2;
-/// Largest torque of the spring with which a burst begins. It is a fraction of the sum of the magnitudes of the torques
-/// that the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension
-/// hold the finger against such a torque. A larger torque usually means that the finger touches something. Without this
+/// Largest torque of the spring at which a burst begins, as a fraction of the sum of the magnitudes of the torques that
+/// the four tendons exert on the joint at the pretension. Pulleys whose friction is this fraction of the tension hold
+/// the finger against such a torque. A larger torque usually means that the finger touches something. Without this
 /// limit, fingers with rotors of half the inertia moved by 2 mm rms at walls.
 const HELD: f64 = 0.1;
 
@@ -36,7 +36,7 @@ const DECAYING: f64 = 0.08;
 /// because the rates of the reference do not depend on measurements.
 #[derive(Clone, Debug)]
 pub(super) struct DitherBurst {
-    /// Largest torque of the spring with which a burst begins, N cm.
+    /// Largest torque of the spring at which a burst begins, N cm.
     held: Vector3<f64>,
     /// Whether [`DitherBurst::waits`] is ever true.
     can_wait: bool,

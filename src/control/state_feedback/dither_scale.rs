@@ -26,8 +26,9 @@ const CHANGING: f64 = 0.05;
 /// If the dither keeps a tendon sliding on its pulleys, their friction acts like viscous friction. A finger that was
 /// pushed therefore approaches its rest position with a time constant that is inversely proportional to the stiffness
 /// of the joints and to the amplitude of the dither. In a pose in which the tip is close to the axis of a joint, this
-/// joint is soft. A nearly straight finger is soft along its links. In both cases the amplitude is larger. In poses
-/// with stiff joints a smaller amplitude suffices, and the tip, which has a long lever, moves less.
+/// joint is soft. In a nearly straight finger, the motion of joints 1 and 2 that moves the tip along the links is soft.
+/// In both cases the amplitude is larger. In poses with stiff joints, the tip has a long lever. A smaller amplitude
+/// suffices there, and moves the tip less.
 #[derive(Clone, Debug)]
 pub(super) struct DitherScale {
     /// For each joint, 1 / the sum of the magnitudes of the torques of the four tendons at the pretension, 1/(N cm).
@@ -78,7 +79,7 @@ mod tests {
 
     const RATE: f64 = 1000.0;
 
-    /// Returns the factor after 1 s with these stiffnesses of the joints, relative to the torques.
+    /// Returns the factor on the amplitude after 1 s, for joints with these values of the firmness, 1/rad.
     fn after_a_second(firmness: [f64; 3], touches: bool) -> f64 {
         let torques = Vector3::new(20.0, 20.0, 10.0);
         let scale = DitherScale::new(&torques, RATE);

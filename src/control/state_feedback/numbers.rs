@@ -1,5 +1,6 @@
-//! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration, so that no
-//! finger needs parameters that are tuned by hand.
+//! The parameters of state feedback ([`Numbers`]). They depend only on the servo rate and the keys of
+//! `[finger.controller]`. Without these keys, all fingers with the same rate have the same parameters, so no finger
+//! needs parameters that are tuned by hand.
 //!
 //! The masses of the motors and the gains of the observers are not among these numbers: `construction` computes them.
 //! The numbers are tuned. Most of them are dimensionless, or their unit is cycles or radians per cycle. Many were found

@@ -155,8 +155,8 @@ impl TendonObserver {
     }
 
     /// Continues from the estimate of another observer of the same tendon. The motor travel of this observer is `ratio`
-    /// times the motor travel of the other. Position and tension are kept, even if the two observers have different
-    /// stiffness or homing pretension.
+    /// times the motor travel of the other. The motor angle and the tension are kept, even if the two observers have
+    /// different stiffness or homing pretension.
     pub fn take_over(&self, previous: &Self, estimate: &mut TendonEstimate, ratio: f64) {
         let tension = previous.tension(&estimate.x);
         estimate.x[0] *= ratio;

@@ -26,8 +26,8 @@ const MOST_CYCLES: usize = 5000;
 /// hardly follows the oscillation, and the lead would be larger than this. Nothing is added then.
 const LARGEST_LEAD: f64 = 3.0;
 
-/// Finds d = mean + Re(D e^(j omega t)) in the disturbance of each motor as the observer estimates it, and returns the
-/// difference between the oscillation that will act in the next period and the estimated one.
+/// Fits d = mean + Re(D e^(j omega t)) to the disturbance that the observer of each motor estimates. Returns the
+/// oscillation that will act in the next period minus the estimated oscillation.
 ///
 /// If the returned difference were multiplied by a factor above 1, the joints would move less while the tip presses
 /// against a wall. But the pull of a motor whose rotor is held would oscillate more and more.
@@ -94,8 +94,8 @@ impl PeriodicDisturbance {
 
 /// Returns e^(j turn) / H - 1. `turn` is omega T, rad.
 ///
-/// The observer expects a constant disturbance. So if the disturbance has the phasor 1, each prediction has the
-/// additional error e^(j turn) - 1. `error` is the phasor of the error of the prediction in the steady oscillation.
+/// The observer expects a constant disturbance. So if the disturbance has the phasor 1, each prediction adds
+/// e^(j turn) - 1 to the error. `error` converges to the phasor of the prediction error in the steady oscillation.
 fn lead(observer: &TendonObserver, turn: f64) -> Vector2<f64> {
     const DISTURBANCE: usize = 4;
     let (correction, transition) = observer.error_transition();

@@ -1,5 +1,5 @@
-//! The reference of the joints, with its derivatives, which the controller feeds forward. A set point in motion has its
-//! own derivatives. A set point at rest has none, so it is filtered.
+//! The reference of the joints, and its derivatives. The controller feeds the derivatives forward. A set point in
+//! motion has its own derivatives. A set point at rest has none, so it is filtered.
 
 mod continuation;
 
@@ -93,8 +93,8 @@ impl Reference {
     /// to zero, so that the reference stays continuous up to its snap. A large deviation first shrinks at the speed of
     /// `slew`.
     ///
-    /// `anchor` is the input of the filter. `along` has the outputs of the stages for a reference that equals the set
-    /// point of the last cycle. It is `None` if that set point was at rest.
+    /// `anchor` is the input of the filter. `along` has the outputs that the stages would have if the reference
+    /// equalled the set point of the last cycle. It is `None` if that set point was at rest.
     pub fn advance_along(
         &self,
         state: &mut ReferenceState,

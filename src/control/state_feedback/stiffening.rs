@@ -37,7 +37,7 @@ const RISING: f64 = 0.01;
 /// stayed for 0.12 s and then decayed with 0.08 s, steps of "cheap" fingers (see `simulation.hand`) settled in
 /// 361 instead of 168 ms.
 const DECAYING: f64 = 0.02;
-/// Value of the envelope, 0 to 1, below which the additional stiffness becomes zero.
+/// If the envelope ([`StiffeningState`]) decays below this value, the additional stiffness becomes zero.
 const ENDED: f64 = 1e-3;
 /// Time constant of the filter that finds the deflection before a motion, s.
 const RESTING: f64 = 0.1;
@@ -62,7 +62,7 @@ pub(super) struct Stiffening {
 pub(super) struct StiffeningState {
     /// d_0, rad.
     rest: Vector3<f64>,
-    /// From 0 to 1.
+    /// Sigma as a fraction of its present upper limit, 0 to 1. It rises during a fast motion, and decays afterwards.
     envelope: f64,
     /// Whether a fast motion is in progress.
     fast: bool,

@@ -31,12 +31,12 @@ pub(crate) struct Slack {
     pub(super) waits_at: Vector4<f64>,
     /// Common stretch in multiples of the stretch at the pretension. A negative value is slack.
     pub(super) common: f64,
-    /// Largest advance of the targets while some tendons pull and another one is slack, in multiples of the stretch at
-    /// the pretension.
+    /// How far the targets have advanced while some tendons pulled and another one was slack: the sum over the cycles
+    /// of the largest step of a motor, in multiples of the stretch at the pretension.
     pub(super) unopposed: f64,
     /// Whether the common stretch is kept, because the tensions are at the pretension.
     pub(super) steady: bool,
-    /// Whether slack tendons are wound in again, because a slack tendon was taken for a taut one.
+    /// Whether slack tendons have been wound in again, because a slack tendon was taken for a taut one.
     pub(super) touches_again: bool,
 }
 

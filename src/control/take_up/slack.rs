@@ -37,7 +37,8 @@ const HOLDS: f64 = 0.012;
 /// If all tendons have more than this fraction of t_min at the start, the take-up begins with [`Phase::Tightening`].
 const ALL_TAUT: f64 = 0.2;
 
-/// Pull in the paying-out direction with which a motor reverses at a taut tendon, in multiples of t_min.
+/// When a tendon has become taut, its motor reverses with this pull in the paying-out direction, in multiples of t_min,
+/// at 1000 Hz and above.
 const REVERSAL: f64 = 16.0;
 /// Longest time for which a motor reverses, s.
 const LONGEST_REVERSAL: f64 = 0.004;

@@ -1,7 +1,7 @@
 //! Tightens the tendons of a finger during its calibration, when the zeros of its encoders and gauges may be wrong.
 //!
-//! The first tendon that comes taut moves a free finger until another tendon opposes it. If all tendons were wound in
-//! together, unequal slack would turn the joints by more than a radian. So every motor winds in slowly until it detects
+//! The first tendon that comes taut moves a free finger until another tendon opposes it. If no motor waited for the
+//! others, unequal slack would turn the joints by more than a radian. So every motor winds in slowly until it detects
 //! tension in its tendon, and then waits until all motors have detected tension. From then on the joint angles can be
 //! measured. The joints are held at the angles of this moment while the tensions rise.
 

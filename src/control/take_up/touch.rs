@@ -6,14 +6,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Part of the tension above the tare that is not counted, in multiples of the noise. The sum therefore stays near zero
-/// while the tendon is slack.
+/// In each sample, the cumulative sum ignores this much of the tension above the tare, in multiples of the noise. The
+/// sum therefore stays near zero while the tendon is slack.
 const IGNORED: f64 = 1.5;
 /// Sum at which the tendon is taut, in multiples of the noise. With `IGNORED` it gives one false detection in about
 /// 1e8 samples of Gaussian noise.
 const DETECTED: f64 = 6.0;
 
-/// Smallest assumed noise, as a fraction of t_min. Without noise the steps of the converter remain.
+/// Smallest assumed noise, as a fraction of t_min. A gauge without noise still shows the steps of its converter.
 const LEAST_NOISE: f64 = 0.005;
 /// Largest assumed noise, as a fraction of t_min.
 const MOST_NOISE: f64 = 0.05;
@@ -138,7 +138,7 @@ mod tests {
         }
     }
 
-    /// At 2 mm/s and 30 kN/m the tension rises by 0.06 N in a period.
+    /// A motor that winds in at 2 mm/s raises the tension of a tendon of 30 kN/m by 0.06 N in a period of 1 ms.
     #[test]
     fn a_taut_tendon_is_detected_within_seven_periods() {
         let mut random = Pcg64::seed_from_u64(4);

@@ -9,7 +9,7 @@ const STIFFNESS: f64 = 40_000.0;
 const DAMPING: f64 = 450.0;
 /// Integral gain relative to the stiffness, 1/s. The integral overcomes the friction of the motor.
 const INTEGRAL: f64 = 15.0;
-/// Error up to which the integral keeps its value, m. Otherwise stiction would cause a limit cycle at rest.
+/// Error up to which the integral keeps its value, m. Without a dead band, stiction would cause a limit cycle at rest.
 const DEAD_BAND: f64 = 1e-5;
 
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::Vector4;
 
-/// Range to which the estimate g of [`Figure11`] is clamped: a motor constant can be wrong by half, and friction at
-/// t_min can add an error of the same size.
+/// Range to which the estimate g of [`Figure11`] is clamped: a motor constant can be wrong by half, and friction at the
+/// minimum tension t_min can add an error of the same size.
 pub(crate) const RATIOS: (f64, f64) = (0.4, 2.0);
 
 /// Below this pull, N, a command contains no information about the motor, because friction alone can hold a
@@ -18,12 +18,12 @@ const SATURATED: f64 = 0.98;
 const SLACK: f64 = 0.2;
 
 /// Computes the pull (t_d - K_delta v) / g from the desired tension t_d and the speed v of the motor side. g is an
-/// estimate of the quotient of a tension and the pull commanded for it, so the M^-1 of eq. 22 is multiplied by 1/g. A
-/// low-pass filter makes g follow t / pull. In this quotient, pull is the pull that acted when the tension t was
-/// measured.
+/// estimate of the quotient of a tension and the pull commanded for it, so the M^-1 of eq. 22 is multiplied by 1/g. (M
+/// is the diagonal matrix of the reciprocal motor radii.) A low-pass filter makes g follow t / pull. In this quotient,
+/// pull is the pull that acted when the tension t was measured.
 ///
 /// Only the conversion from tension to torque is adapted. The block (RM)^-T of Figure 9, which computes joint angles
-/// from motor angles, contains an M too. That M is not adapted, because it stands for geometry: an estimate would
+/// from motor angles, contains M too. In that block M is not adapted, because it stands for geometry: an estimate would
 /// change the measured joint angles, the angles would change the tensions, and the tensions would change the estimate.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure11 {

@@ -2,7 +2,7 @@
 //!
 //! The servo neither waits for a reader nor knows of one. A reader that falls behind loses the oldest events, and
 //! counts them. Each place has a sequence number, which the servo clears before it overwrites the place. A reader
-//! therefore detects that a place has changed during its copy.
+//! therefore detects that a place has changed while the reader copied it.
 
 use super::words::WORDS;
 use super::{Event, Occurrence};
@@ -84,8 +84,7 @@ pub(super) fn event_log_of(finger: FingerNumber, capacity: usize) -> (EventWrite
 }
 
 impl EventLog {
-    /// Returns a reader that begins with the oldest event in the log. It does not count the events that the log no
-    /// longer holds.
+    /// Returns a reader that begins with the oldest event in the log. Earlier events do not count as lost.
     pub fn reader(&self) -> EventReader {
         let published = self.0.published.load(Ordering::Acquire);
         EventReader { log: self.0.clone(), position: published.saturating_sub(self.0.capacity()), lost: 0 }

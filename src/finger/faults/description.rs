@@ -100,7 +100,7 @@ impl Display for Explanation {
 }
 
 impl PartKind {
-    /// Returns the singular for use in a sentence; none for the whole finger.
+    /// Returns the noun for one part of this kind, for use in a sentence; none for the whole finger.
     pub fn word(self) -> Option<&'static str> {
         match self {
             PartKind::Finger => None,

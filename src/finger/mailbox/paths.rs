@@ -10,8 +10,8 @@ use crate::finger::{Fault, Replaced, Validity};
 use nalgebra::Matrix6;
 use std::sync::MutexGuard;
 
-/// A path of one finger, before it is sent. No other planner can change the finger's set point meanwhile. Dropping this
-/// value changes nothing.
+/// A path of one finger, before it is sent. While this value exists, no other planner can change the finger's set
+/// point. Dropping this value changes nothing.
 pub struct PreparedPath<'a> {
     planners: MutexGuard<'a, PlannersEnd>,
     next: SentSetPoint,
@@ -42,10 +42,10 @@ impl Mailbox {
         Ok(prepared.map(|prepared| prepared.map(PreparedPath::send)))
     }
 
-    /// Prepares a path, as [`Mailbox::send_path`] sends it. `spring`, `origin` and `valid` are the parts of its
-    /// parameter `when`. `command` changes the set point before the path begins, as [`Mailbox::try_send`] does, and
-    /// says which part it replaces. A caller that prepares several fingers must do this in the order of their numbers,
-    /// as for [`Mailbox::prepare`].
+    /// Prepares a path for [`PreparedPath::send`]. `spring`, `origin` and `valid` are the parts of the parameter `when`
+    /// of [`Mailbox::send_path`], and `change` is the same as there. `command` changes the set point before the path
+    /// begins, as [`Mailbox::try_send`] does, and says which part it replaces. A caller that prepares several fingers
+    /// must do this in the order of their numbers, as for [`Mailbox::prepare`].
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. If `command` or `change` refuses the set point, the inner result is
@@ -114,8 +114,8 @@ impl PreparedPath<'_> {
 }
 
 impl PlannersEnd {
-    /// Does the same as [`Mailbox::path_ahead`], but does not bring the set point that was sent last up to date. The
-    /// caller must have done so.
+    /// Does the same as [`Mailbox::path_ahead`], but does not update `sent` to the present spring phase. The caller
+    /// must have called [`SentSetPoint::begin_with`].
     fn path_ahead(&mut self) -> Option<PathExtent> {
         self.extent_ahead(self.sent.path)
     }
@@ -129,7 +129,7 @@ impl PlannersEnd {
             return None;
         }
         let PathExtent { lowest, highest, stiffest } = self.path.extent;
-        // A stiffness that was sent later has ended the change of the stiffness along the path.
+        // If a stiffness was sent after the path, `path.stiffness` is false: the path no longer changes the stiffness.
         Some(PathExtent { lowest, highest, stiffest: stiffest.filter(|_| path.stiffness) })
     }
 

@@ -1,4 +1,4 @@
-//! Renewals of the validity of a set point, without a new set point.
+//! Renews the time for which a set point is valid, without sending a new set point.
 
 use super::{Mailbox, ServoEnd};
 use crate::finger::validity::Renewal;

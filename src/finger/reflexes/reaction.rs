@@ -60,7 +60,7 @@ impl ReactionLimits {
         followed: &SetPoint,
     ) -> Option<SetPoint> {
         let rest = SetPoint { motion: None, ..*followed };
-        // A constant torque would move the finger away from the pose of a reaction.
+        // The constant joint torque of the set point would move the finger away from the pose of a reaction.
         let still = {
             let mut still = rest;
             still.torque_joints(Vector3::zeros());
@@ -148,10 +148,10 @@ mod tests {
         let after = force(&limits.react(&grip, &report, &followed).expect("a set point").joints);
         assert!((after.norm() - before.norm() - 0.2).abs() < 0.01, "{} to {} N", before.norm(), after.norm());
         assert!(after.normalize().dot(&before.normalize()) > 0.9999);
-        // The largest force is not exceeded, and a larger force is not reduced.
+        // A force that already exceeds the largest force of the grip is neither increased nor reduced.
         let most = Reaction::Grip { direction: Vector3::zeros(), by: 0.2, most: before.norm() - 0.1 };
         assert_eq!(limits.react(&most, &report, &followed).expect("a set point").joints, followed.joints);
-        // Only the component in a given direction grows.
+        // If the grip has a direction, the force grows in this direction.
         let down = Reaction::Grip { direction: before.cross(&Vector3::x()) + before, by: 0.2, most: 5.0 };
         let pressed = force(&limits.react(&down, &report, &followed).expect("a set point").joints) - before;
         assert!(pressed.dot(&(before.cross(&Vector3::x()) + before).normalize()) > 0.19, "{pressed}");

@@ -109,8 +109,8 @@ impl ReflexServer {
     }
 }
 
-/// Returns the present count of another finger's event, with which a new rule begins. Events that were counted earlier
-/// do not fire the rule.
+/// Returns how often the event of another finger has been counted so far; 0 for other conditions. A new rule begins
+/// with this count, so events that were counted earlier do not fire the rule.
 fn state_of_others(condition: &Condition, bulletin: &Bulletin) -> u32 {
     match *condition {
         Condition::OtherFinger { finger, event } => bulletin.counted(finger, event),

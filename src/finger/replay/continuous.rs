@@ -114,7 +114,7 @@ impl ContinuousReplay {
     /// Stores the source of a controller.
     ///
     /// # Errors
-    /// Returns an error if no hand opens with this configuration.
+    /// Returns an error if no hand opens with the configuration `hand`, or with the finger or the gravity of `source`.
     pub fn controller(&mut self, source: ControllerSource, hand: ConfiguredHand) -> Result<(), Unsound> {
         let number = source.number;
         if self.hand.as_ref() != Some(&hand) {

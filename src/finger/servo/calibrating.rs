@@ -28,9 +28,9 @@ impl FingerServo {
     }
 
     /// Runs one step of the calibration, if there is one and a reply has arrived, and sets the finger's activity.
-    /// Returns the data of the previous cycle if the servo computes this cycle with other data. This happens in two
-    /// cases: the calibration gives its first activity, or the calibration ends without an activity after planners have
-    /// replaced the data.
+    /// Returns the [`Adjustable`] of the previous cycle if the servo computes this cycle with another one. This happens
+    /// in two cases: the calibration gives its first activity, or the calibration ends without an activity after
+    /// planners have replaced the `Adjustable` of the finger.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -57,10 +57,11 @@ impl FingerServo {
     }
 
     /// Enters the stage that the finger had before a calibration that gave no activity. If planners have replaced the
-    /// data with which the servo computes, returns the previous data.
+    /// [`Adjustable`] of the finger during the calibration, returns the previous one.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
         // Set points that planners sent meanwhile had no effect, so the next change of a set point must not start from
-        // one of them. In a new spring phase, the next change starts from the set point that the servo holds.
+        // one of them. In a new spring phase (`FingerReport::springs`), the next change starts from the set point that
+        // the servo holds.
         self.report.springs += u32::from(before.stage == Stage::Running);
         self.report.expired_phase = None;
         self.motion.renewal = None;

@@ -23,7 +23,8 @@ impl Calibrating {
         self.before.as_ref().map_or(&self.run.adjustable, |before| &before.adjustable)
     }
 
-    /// Returns the data with which the servo computes, if the finger still follows set points, as a spring.
+    /// If the finger still follows set points as a spring, returns the data with which the servo computes. Otherwise
+    /// returns none.
     pub fn spring(&self) -> Option<&Adjustable> {
         self.before.as_ref().filter(|before| before.stage == Stage::Running).map(|before| &before.adjustable)
     }

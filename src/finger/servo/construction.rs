@@ -24,8 +24,8 @@ use nalgebra::{Matrix3, Vector3};
 const TENSION_SETTLED: f64 = 0.02;
 
 /// Distance of a joint from its soft limits, rad, beyond which its measured pose counts as impossible. In the stage
-/// `Running`, a margin is added. The mechanical stops of a hand are usually closer, and the errors of measured angles
-/// are smaller.
+/// `Running`, a margin is added. The mechanical stops of a hand are usually closer to the soft limits than this
+/// distance, and the errors of measured angles are smaller than this distance.
 const BEYOND_LIMITS: f64 = 0.5;
 
 /// Time for which a warning is kept after it was last noted, ms.

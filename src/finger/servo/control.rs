@@ -87,8 +87,8 @@ impl FingerServo {
         previous
     }
 
-    /// Follows the set point that a planner has sent. A set point of another spring phase is discarded, unless a
-    /// planner sent it while its predecessor expired.
+    /// Follows the set point that a planner has sent. A set point of another spring phase (`FingerReport::springs`) is
+    /// discarded, unless a planner sent it while the previous set point expired.
     pub(super) fn take_set_point(&mut self, sent: &SentSetPoint) {
         if sent.spring != self.report.springs && self.report.expired_phase != Some(sent.spring) {
             return;

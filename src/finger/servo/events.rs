@@ -29,8 +29,8 @@ impl FingerServo {
         self.events.announce();
     }
 
-    /// Runs the detectors of a finger in the stage `Running`, if a reply has arrived, and writes their observations to
-    /// the log.
+    /// Runs the detectors if the finger is in the stage `Running`, follows a set point and has received this cycle's
+    /// reply. Writes their observations to the log.
     pub(super) fn observe(&mut self) {
         if let (Stage::Running, Activity::Follow(set_point), true) = (self.report.stage, &self.activity, self.answered)
         {

@@ -124,8 +124,8 @@ impl FingerServo {
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.supervision.note_reply(reply.status, counted, clocked);
-        // If the board had no valid zero at opening, ZERO_VALID cannot show that it has lost its counts. A board loses
-        // its counts together with the terms of its Configure frame, so CONFIGURED shows the loss.
+        // If the board had no valid zero at opening, ZERO_VALID cannot show that the board has lost its counts. A board
+        // loses its counts together with the terms of its Configure frame, so CONFIGURED shows the loss.
         let lost = |bit: Status| self.status.has(bit) && !reply.status.has(bit);
         let zero_lost = !reply.status.has(Status::ZERO_VALID) && (lost(Status::ZERO_VALID) || lost(Status::CONFIGURED));
         self.status = reply.status;

@@ -101,15 +101,16 @@ impl FingerServo {
     }
 
     /// Ages the warnings of a finger that is faulted or closed, because its monitors do not run any more. `controlled`
-    /// says whether they have run in this cycle, before the finger faulted in it.
+    /// says whether the controller has run in this cycle. The warnings have then already aged, even if the finger has
+    /// faulted in this cycle.
     pub(super) fn age_warnings(&mut self, controlled: bool) {
         if !controlled && !self.under_control() {
             self.report.warnings.note(&mut self.supervision.recent_warnings, None, self.limits.warning);
         }
     }
 
-    /// Resumes after a fault. The board has been configured again, and no motor has moved since. A request to stop that
-    /// is later than the requests in `restored` stops the finger again.
+    /// Resumes after a fault. The board has been configured again, and its motors have been off since. A request to
+    /// stop that is later than the requests in `restored` stops the finger again.
     pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
         let RestoredBoard { configured, stops, restarts } = restored;
         self.alarm.forget(stops);

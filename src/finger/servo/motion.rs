@@ -12,7 +12,7 @@ use crate::model::Part;
 
 impl FingerServo {
     /// Computes when a set point expires. A path is valid until its end, and then for the time for which a set point is
-    /// valid. This also applies to a path that the finger does not follow because of an inhibition.
+    /// valid. This also applies to a path that the finger does not follow because of the inhibition after a reflex.
     pub(super) fn begin_validity(&mut self, sent: &SentSetPoint) {
         let end = sent.path.as_ref().map_or(0, |path| path.end(self.limits.period()));
         let begin = end.max(self.motion.next_period);

@@ -14,7 +14,7 @@ pub(super) struct SetPointMotion {
     pub target: Vector3<f64>,
     pub interpolation: InterpolationState,
     pub expiry: Option<Expiry>,
-    /// The newest renewal of a validity. Its set point may not have taken effect yet.
+    /// The newest renewal of the validity of a set point. This set point may not have taken effect yet.
     pub renewal: Option<Renewal>,
     /// The spring phase (`FingerReport::springs`) and the number of the set point that a planner sent last.
     planned: (u32, u32),

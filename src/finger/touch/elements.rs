@@ -23,7 +23,7 @@ pub struct TouchReading {
     pub force: f64,
 }
 
-/// The elements of a finger. Clones are the same elements.
+/// The elements of a finger. All clones share the same elements.
 #[derive(Clone)]
 pub struct Elements(SharedPages<Shared>);
 

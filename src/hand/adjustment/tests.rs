@@ -1,4 +1,4 @@
-//! Tests of adjustments that need no running finger.
+//! Tests adjustments without a running finger.
 
 use super::*;
 

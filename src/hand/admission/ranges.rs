@@ -85,9 +85,9 @@ impl Ranges {
     }
 }
 
-/// Returns the stiffness `symmetric`, whose smallest and largest eigenvalues are given, if all of its eigenvalues are
-/// from zero to `bound`. Otherwise returns the nearest stiffness for which this is true, or none if `symmetric` is
-/// stiffer than `bound` and must be refused.
+/// Returns the stiffness `symmetric`, whose smallest and largest eigenvalues are given, if none of its eigenvalues is
+/// negative or exceeds `bound` by more than a rounding error. Otherwise returns the nearest stiffness whose eigenvalues
+/// are from zero to `bound`, or none if `symmetric` is stiffer than `bound` and must be refused.
 pub(super) fn within_bound(
     symmetric: Matrix3<f64>,
     (smallest, largest): (f64, f64),

@@ -1,4 +1,4 @@
-//! The checks of joints, stiffnesses, contacts, damping, joint springs and joint torques.
+//! Tests of the admission of joint angles, stiffnesses, contacts, damping, joint springs and joint torques.
 
 use super::*;
 use crate::control::Controller;
@@ -80,7 +80,7 @@ fn clamping_takes_the_nearest_admissible_value() {
     let clamp = admission(OutOfRange::Clamp);
     assert_eq!(clamp.joints([2.0, -3.0, 1.0]).expect("clamped"), Vector3::new(1.0, -0.5, 1.0));
     let kx = clamp.kx([[5.0, 4.0, 0.0], [4.0, 5.0, 0.0], [0.0, 0.0, 2.0]]).expect("clamped");
-    // Eigenvalues 9 and 1 along the diagonals become 6 and 1.
+    // The eigenvalues 9 in the direction (1, 1, 0) and 1 in the direction (1, -1, 0) become 6 and 1.
     let expected = Matrix3::new(3.5, 2.5, 0.0, 2.5, 3.5, 0.0, 0.0, 0.0, 2.0);
     assert!((kx - expected).amax() < 1e-12, "{kx}");
     assert!(matches!(clamp.joints([f64::INFINITY, 0.0, 1.0]), Err(SetPointError::NotFinite { .. })));
@@ -202,7 +202,7 @@ mod damping {
             let mut admitted = set_point(stiffness, damping);
             refuse.admit(&mut admitted).expect("admitted");
             assert_eq!(admitted, set_point(stiffness, damping));
-            // As float, 0.94 is below the limit.
+            // 0.94, rounded to float, is just below the lower limit 0.94, and is admitted as this limit.
             let mut rounded = set_point(stiffness, f64::from(damping as f32));
             refuse.admit(&mut rounded).expect("admitted");
             assert!((rounded.damping - damping).abs() < 1e-7 && rounded.damping >= least_of(&refuse, stiffness));

@@ -16,7 +16,7 @@ use toml_edit::{Document, Item, Table, Value, value};
 /// `libsun2xp_remote` the table `remote`.
 const TABLES: [&str; 5] = ["hand", "telemetry", "finger", "serve", "remote"];
 
-/// The keys of a finger whose value is a table with a single key, which selects a variant.
+/// Keys in the table of a finger. The value of each is a table with a single key, which selects a variant.
 const CHOICES: [&str; 1] = ["surface"];
 
 /// What the text says, apart from the values.

@@ -31,7 +31,8 @@ pub(super) fn collect(
     stopped: &Receiver<()>,
 ) {
     if folder.is_some() {
-        // A finger may recover before this thread has seen its fault, so the records after a fault must wait.
+        // A finger may recover before this thread has seen its fault. The records after a fault therefore wait until
+        // this thread has written the recording.
         fingers.iter().for_each(|collected| collected.lock().black_box.wait_at_faults());
     }
     let mut ended = false;
@@ -51,7 +52,8 @@ pub(super) fn collect(
                 report(
                     Severity::Warning,
                     "a finger faulted, but its black box was not written, because there is not enough free memory: end \
-                     other programs, or raise the memory limit of this process (ulimit -v)",
+                     other programs, or raise the memory limit of this process (ulimit -v). Then request the black \
+                     box of the finger before you recover it",
                 );
                 continue;
             }

@@ -26,7 +26,8 @@ impl Member {
         let finger = self.number;
         match stage {
             Stage::Faulted(fault) => HandError::Faulted { finger, fault },
-            // Between the end of a calibration and the use of its results, a finger is limp for a moment.
+            // Between the end of a calibration and the use of its results, a finger is limp for a moment. Its set
+            // points are then refused as those of a busy finger.
             Stage::Limp if !self.calibrated.load(Ordering::Acquire) => HandError::Limp(finger),
             _ => HandError::Busy(finger),
         }

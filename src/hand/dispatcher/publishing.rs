@@ -23,7 +23,7 @@ const EARLIER_EVENTS: u64 = 250_000_000;
 /// Memory for what a first reader needs besides the outlets, bytes.
 const MEMORY_OF_READER: usize = 1 << 20;
 
-/// Largest number of events in a batch. The log of a finger holds 4096.
+/// Largest number of events in a batch: more than the logs of three fingers hold, 4096 each.
 const MOST_EVENTS: usize = 16_384;
 
 /// Publishes the data of a hand's fingers.

@@ -40,7 +40,7 @@ pub enum ConfigurationError {
     Invalid {
         /// The file, or `configuration text`.
         file: PathBuf,
-        /// The line of the key, from 1; none if the key is not in the file.
+        /// The line of the error, counted from 1; none if the error belongs to no line.
         line: Option<usize>,
         /// What is wrong.
         reason: String,

@@ -106,9 +106,10 @@ pub enum SetPointError {
     NotSymmetric {
         /// The finger.
         finger: FingerNumber,
-        /// Row of the first such pair.
+        /// Row of the first entry `Kx[row][column]` that differs from `Kx[column][row]` by more than a thousandth of
+        /// the largest entry.
         row: usize,
-        /// Column of the first such pair.
+        /// Column of this entry.
         column: usize,
         /// Difference of the two entries, N/cm.
         difference: f64,

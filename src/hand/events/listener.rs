@@ -63,7 +63,7 @@ impl Drop for EventListener {
         self.stop.store(true, Ordering::Release);
         self.queue.state().source.readers.notify();
         if let Some(thread) = self.thread.take_if(|thread| thread.thread().id() != thread::current().id()) {
-            // A panic of the function has ended the thread, and there is nothing else to do.
+            // An error means that a panic of the function has ended the thread. There is nothing else to do.
             let _ = thread.join();
         }
     }

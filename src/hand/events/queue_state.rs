@@ -6,7 +6,8 @@ use crate::finger::events::Event;
 use crate::realtime::{Mutex, now};
 use std::sync::Arc;
 
-/// Interval at which a waiting thread checks whether another finger has finished its cycle, ns.
+/// Interval at which a waiting thread checks whether a held-back event can be taken, ns. An event is held back while
+/// another finger has not finished its cycle and may still have an earlier event.
 const HELD_BACK_CHECK: u64 = 100_000;
 
 /// The state of a queue.

@@ -102,7 +102,7 @@ impl Admission {
         self.direct_path(reference, poses).or_else(|refusal| self.path_after_braking(reference, poses).ok_or(refusal))
     }
 
-    /// Computes a path that first brakes to rest for [`BRAKING`]. Returns none if `reference` is at rest, or if this
+    /// Computes a path that first brakes to rest within [`BRAKING`]. Returns none if `reference` is at rest, or if this
     /// path must be refused too.
     fn path_after_braking(&self, reference: &Reference, poses: &[PathPose]) -> Option<Plan> {
         let start = start_of(reference);
@@ -192,9 +192,9 @@ impl Admission {
         Ok(())
     }
 
-    /// Returns the stiffness along the path. It is empty if no pose has a stiffness. A Kx that is no spring is refused
-    /// before one that is too stiff, whichever pose comes first, so that the reported reason does not depend on the
-    /// order of the poses.
+    /// Returns the stiffness along the path. It is empty if no pose has a stiffness. A Kx that is not symmetric or not
+    /// positive semi-definite is refused before one that is too stiff, whichever pose comes first. So the order of the
+    /// poses does not decide which of the two is reported.
     fn stiffness_along(&self, poses: &[PathPose]) -> Result<Vec<TimedStiffness>, PathError> {
         let mut along: Vec<TimedStiffness> = Vec::new();
         let mut too_stiff = None;

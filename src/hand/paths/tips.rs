@@ -6,11 +6,11 @@ use crate::hand::{PathError, SetPointError};
 use crate::model::path::{Knot, Piece, Start, spline};
 use nalgebra::Vector3;
 
-/// Distance of the tip from its path that is always accepted, cm. If the distance is larger, more pieces are used, as
-/// far as the table of pieces permits.
+/// The tip may always deviate this far from its path, cm. If it deviates further, the path is divided into more pieces,
+/// up to [`MOST_PIECES`].
 const ACCURATE: f64 = 0.001;
 
-/// Largest distance of the tip from its path that is accepted, cm.
+/// Largest deviation of the tip from its path, cm. A path with a larger deviation is refused.
 const ACCEPTED: f64 = 0.01;
 
 /// Numbers of pieces per pose that are tried one after the other.

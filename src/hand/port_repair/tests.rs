@@ -1,4 +1,4 @@
-//! Boards that a repair finds: the same board as at open, another one, and one that has lost its counts.
+//! Tests of repairs that find the same board as at open, another board, or a board that has lost its counts.
 
 use super::*;
 use crate::board::OutgoingCommand;
@@ -111,8 +111,9 @@ fn a_restart_of_a_board_with_tactile_elements_is_counted() {
     assert_eq!((restarts(&mut link), restarts(&mut link)), (1, 1));
 }
 
-/// A finger that the servo takes and that faults at once must not have more recoveries than repairs, so its repair
-/// is counted before the servo gets the finger. If the servo does not take the finger, the repair is not counted.
+/// The count of a finger's recoveries must never exceed the count of its repairs, even if the finger faults as soon as
+/// the servo takes it. So a repair is counted before the servo gets the finger. If the servo does not take the finger,
+/// the count is reduced again.
 #[test]
 fn a_repair_is_counted_exactly_if_the_servo_can_take_the_finger() {
     let (_servo, repair_end) = link_handover();

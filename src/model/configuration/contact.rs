@@ -18,7 +18,8 @@ pub struct ConfiguredContact {
     /// Relative uncertainty of the masses of the links. It raises `torque` while joints accelerate, and when the
     /// torques of gravity change.
     pub mass_tolerance: f64,
-    /// A contact is lost when its force, or the torque at every joint, falls below this part of its threshold.
+    /// A contact is lost when the force at the tip falls below this fraction of the threshold for the force, or when
+    /// the torque at every joint falls below this fraction of the threshold for that joint.
     pub lost: f64,
     /// Time constant with which a constant error of the torques is learned while nothing is touched, s.
     pub learning_time_s: f64,

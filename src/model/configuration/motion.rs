@@ -1,4 +1,4 @@
-//! `[finger.motion]`: limits of paths, interpolation of set points, and their expiry.
+//! `[finger.motion]`: limits of paths, and interpolation and expiry of set points.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ pub struct ConfiguredMotion {
     /// Time for which a finger holds its pose after its set point has expired, ms. Then it faults, and its board goes
     /// to the end state. With `None`, the finger holds its pose indefinitely.
     pub end_state_ms: Option<f64>,
-    /// Stiffness in every direction with which a finger holds its pose after its set point has expired, N/cm.
+    /// Stiffness, equal in every direction, with which a finger holds its pose after its set point has expired, N/cm.
     pub expired_stiffness: f64,
 }
 

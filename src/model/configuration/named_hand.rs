@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A named set of defaults for the other keys of `[finger.simulation]`. The values that the controller assumes do not
-/// change, so a finger with a set other than `Nominal` differs from its configuration. Calibration measures some of the
-/// differences.
+/// A named set of defaults for the keys of `[finger.simulation]` other than `hand`, which contains the name. The values
+/// that the controller assumes do not change, so a finger with a set other than `Nominal` differs from its
+/// configuration. Calibration measures some of the differences.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

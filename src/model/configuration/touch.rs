@@ -18,7 +18,7 @@ pub struct ConfiguredTouch {
 #[serde(deny_unknown_fields)]
 pub struct TouchElement {
     /// Position relative to the fingertip in the axes of the last link, cm. The z axis of the link points from joint 2
-    /// to the tip, and its x axis is the axis of joints 1 and 2.
+    /// to the tip, and its x axis has the direction of the parallel axes of joints 1 and 2.
     pub position: [f64; 3],
     /// Outward normal of the element in the same axes. Its length does not matter.
     pub normal: [f64; 3],

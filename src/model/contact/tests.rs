@@ -1,4 +1,4 @@
-//! Springs, their selections, and what is refused.
+//! Tests of `Contact`: the 6 x 6 stiffness that follows from K and the selection, and the values that are refused.
 
 use super::*;
 use proptest::prelude::*;
@@ -58,7 +58,7 @@ fn the_shortest_normal_has_a_direction() {
 }
 
 #[test]
-fn every_contact_transmits_the_directions_of_its_selection() {
+fn contacts_transmit_the_directions_of_their_selections() {
     let kx = Matrix3::new(3.0, 0.5, 0.1, 0.5, 2.0, 0.25, 0.1, 0.25, 1.0);
     let hard = Contact::hard_finger(kx).expect("a spring");
     assert_eq!(hard.stiffness().fixed_view::<3, 3>(0, 0), kx);
@@ -75,7 +75,8 @@ fn every_contact_transmits_the_directions_of_its_selection() {
     let soft = Contact::soft_finger(k, normal).expect("a spring");
     let turned = nalgebra::Vector6::new(0.0, 0.0, 0.0, 0.1, 0.6, 0.8);
     let wrench = soft.stiffness() * turned;
-    // The tip is rotated by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not transmit.
+    // The tip is rotated by 1 rad about the normal, and by 0.1 rad about x. The normal is the only axis about which a
+    // soft finger transmits a moment, so the rotation about x has no effect.
     let expected = nalgebra::Vector6::new(0.5, 0.0, 0.0, 0.0, 12.0, 16.0);
     assert!((wrench - expected).amax() < 1e-12, "{wrench}");
     assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);

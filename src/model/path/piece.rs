@@ -64,8 +64,8 @@ impl Piece {
         }
     }
 
-    /// Returns lower and upper bounds of the derivative of the given order over the whole piece: 0 for the coordinates
-    /// themselves, up to 3 for the jerk. The bounds are never inside the true range, and are outside it by at most
+    /// Returns lower and upper bounds of a derivative over the whole piece. `order` is 0 for the coordinates
+    /// themselves, and up to 3 for the jerk. The bounds are never inside the true range, and are outside it by at most
     /// 1 % of its width.
     pub fn bounds(&self, order: usize) -> (Vector3<f64>, Vector3<f64>) {
         let scale = self.length.powi(-(order as i32));

@@ -47,7 +47,8 @@ impl ConfiguredFinger {
         let largest = |strain| inertias.iter().map(|inertia| share(inertia, strain)).fold(0.0, f64::max);
         let used = largest(&without_friction);
         if used >= STABLE {
-            // The inertia is proportional to all masses together, and one of them is that of the held object.
+            // Raising all masses by a factor raises the inertia by this factor. The held object is one of these masses,
+            // so the text names it too.
             let held = if simulation.held_mass > 0.0 { " and a simulation.held_mass" } else { "" };
             let reason = format!(
                 "are too small for the step of the simulation, which would diverge at a joint's stop: masses{held} \

@@ -43,7 +43,7 @@ struct board {
     struct plant plant;
 };
 
-/* The longest motion in one wake-up of the board, and between two Commands, ns. */
+/* The longest time for which the finger may move in one wake-up of the board, and between two Commands, ns. */
 enum { MOTION_MOST = 2000000 };
 
 /* Handles one byte from the line. */

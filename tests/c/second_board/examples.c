@@ -1,4 +1,5 @@
-/* Builds the examples of docs/board-protocol.md from the values that stand beside them there. */
+/* Builds the example frames of docs/board-protocol.md from the values that the page states, and compares them with the
+   bytes on the page. */
 
 #include "examples.h"
 #include "board.h"

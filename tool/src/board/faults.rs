@@ -59,7 +59,7 @@ impl Trouble {
                     let fault = LineFault::Delay(nanoseconds(delay)?);
                     Trouble::Line(fault, probability(chance)?, nanoseconds(time)?)
                 }
-                _ => return Err("usage: delay PROBABILITY LATER [MS]".into()),
+                _ => return Err("usage: delay PROBABILITY DELAY_MS [MS]".into()),
             },
             "stall" => match numbers()?[..] {
                 [time] => Trouble::Line(LineFault::Stall, 1.0, nanoseconds(time)?),

@@ -61,7 +61,7 @@ const DEFECTS: [Entry; 24] = [
 const LINE_FAULTS: [Entry; 10] = [
     ("drop PROBABILITY [MS]", "lose frames"),
     ("corrupt PROBABILITY [MS]", "invert one bit of a frame"),
-    ("delay PROBABILITY LATER [MS]", "delay frames by LATER ms"),
+    ("delay PROBABILITY DELAY_MS [MS]", "delay frames by DELAY_MS"),
     ("duplicate PROBABILITY [MS]", "send frames twice"),
     ("reorder PROBABILITY [MS]", "send frames in the wrong order"),
     ("stall MS", "send nothing for MS, then everything at once"),

@@ -1,4 +1,4 @@
-//! Samples of the search for the bound, as text and for other programs.
+//! Describes a sample of the search for the bound of Kx, as text and as JSON.
 
 use serde::Serialize;
 use sun2xp::control::Law;

@@ -1,4 +1,4 @@
-//! The bound over the set of plants, without and with walls.
+//! Finds the bound of Kx (the largest eigenvalue that Kx may have) over the set of plants, without and with walls.
 
 use super::sample::{Sample, degrees, pose};
 use super::{Arguments, Searched};
@@ -8,17 +8,18 @@ use serde::Serialize;
 use std::io::{self, Write};
 use sun2xp::stability::{Limit, Search, StiffnessBound, Variant};
 
-/// Samples for each plant of the set, without and with walls.
+/// Number of samples for each plant of the set without walls, and again with walls.
 const SAMPLES_OF_SET: usize = 400;
 
-/// Samples for the nominal plant alone.
+/// Number of samples without walls, and again with walls, if the set is only the nominal plant.
 const SAMPLES_OF_NOMINAL: usize = 2000;
 
-/// A controller is useless if more than this fraction of the samples are unstable at every stiffness. The samples are
-/// those of the nominal plant without walls. A few almost straight poses with a very slow motion are permitted.
+/// A controller is useless if more than this fraction of the samples are unstable even at 1 N/cm. The samples are those
+/// of the nominal plant without walls. A smaller fraction is permitted, because a few almost straight poses have a very
+/// slow motion, which counts as unstable.
 const USELESS: f64 = 0.1;
 
-/// The error text for an empty set of plants. No arguments lead to an empty set.
+/// The error text for an empty set of plants. The set is never empty, whatever the arguments are.
 const NO_PLANT: &str = "the set of plants is empty. This is a defect of sun2xp: please report it";
 
 /// The bounds of all plants.
@@ -40,7 +41,7 @@ struct Member {
     limit: LimitFound,
     /// Number of samples clear of the axis of joint 0.
     samples: usize,
-    /// Number of samples that are unstable at every stiffness. The bound does not cover them.
+    /// Number of samples that are unstable even at 1 N/cm. The bound does not cover them.
     uncovered: usize,
     uncovered_example: Option<Sample>,
     /// The softest wall of an uncovered sample, N/cm. `None` without walls or uncovered samples.
@@ -83,11 +84,12 @@ fn places(arguments: &Arguments) -> &'static [bool] {
     if arguments.free { &[false] } else { &[false, true] }
 }
 
-/// Finds the bounds of all plants, and returns the least one, N/cm. Except for the nominal plant without walls, a
-/// plant with samples that are unstable at every stiffness does not count: no bound makes it stable.
+/// Finds the bounds of all plants, and returns the least one, N/cm. Except for the nominal plant without walls, a plant
+/// with samples that are unstable even at 1 N/cm does not count: no bound makes it stable.
 ///
 /// # Errors
-/// If the nominal plant without walls is often unstable at every stiffness, there is no bound.
+/// Returns an error if the controller is useless (see `USELESS`). Also returns the errors of [`Search::bound`] and
+/// [`Search::near_axis`].
 pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, SetBound), Failure> {
     let Searched { number, finger, rate } = *searched;
     let usual = if arguments.nominal { SAMPLES_OF_NOMINAL } else { SAMPLES_OF_SET };
@@ -151,7 +153,7 @@ impl Member {
         }
     }
 
-    /// The text of a bound, with the number of samples that it does not cover in brackets.
+    /// The text of the bound and, in brackets, the number of samples that the bound does not cover.
     fn cells(&self, limits: bool) -> [Cell; 2] {
         let uncovered = match self.uncovered {
             0 => String::new(),

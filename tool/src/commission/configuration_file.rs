@@ -10,7 +10,8 @@ use toml_edit::{Array, DocumentMut, Formatted, Item, Table, Value};
 
 /// Largest configuration file, bytes.
 pub const LARGEST: u64 = 1 << 20;
-/// Every comment of this tool begins with this text. A new comment replaces an older one above the same key.
+/// Every comment that this tool writes above a key begins with this text. A new comment replaces an older one above the
+/// same key.
 const MARK: &str = "# commission ";
 /// Number of significant digits of a number.
 const DIGITS: usize = 6;
@@ -65,9 +66,9 @@ fn differences(before: &DocumentMut, after: &DocumentMut) -> Vec<Changed> {
 fn rounded(value: &Value) -> Value {
     let digits = DIGITS - 1;
     match value {
-        // The text of a number can be parsed.
         Value::Float(number) => {
             let number = *number.value();
+            // The formatted text of a number can always be parsed.
             Value::Float(Formatted::new(format!("{number:.digits$e}").parse().unwrap_or(number)))
         }
         Value::Array(values) => Value::Array(values.iter().map(rounded).collect::<Array>()),

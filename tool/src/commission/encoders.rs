@@ -13,7 +13,7 @@ use sun2xp::calibration::{Obstacle, Task};
 const READING: f64 = 0.2;
 /// An encoder has moved if it shows more than this part of a turn.
 const MOVED: f64 = 0.05;
-/// Largest error of a turn by hand.
+/// Largest relative error of a turn that a person makes by hand.
 const BY_HAND: f64 = 0.15;
 /// The usual ratios of the true to the configured counts. They occur if the configuration assumes the wrong number of
 /// channels or edges.

@@ -88,12 +88,7 @@ impl Machine for HandMachine {
         let configured = &configuration.fingers[index];
         let simulated = SimulatedHand::start(&configuration, fingers)?;
         let found = ports(&configuration, fingers, &simulated);
-        let (port, _) = found.first().ok_or_else(|| {
-            format!(
-                "finger {0} has no port, because hand.fingers does not contain it: add {0} to hand.fingers",
-                self.finger
-            )
-        })?;
+        let (port, _) = found.first().expect("the hand has this finger");
         let mut link = Link::open(port, configured.baud)?;
         let terms = Terms::new(&configuration.hand, configured);
         let address = configuration.address(self.finger);

@@ -46,7 +46,7 @@ pub struct BoardSeen {
 pub struct Bound {
     /// N/cm.
     pub stiffness: f64,
-    /// What prevents a larger one.
+    /// What prevents a larger stiffness.
     pub limit: String,
 }
 

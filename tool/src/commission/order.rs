@@ -3,17 +3,18 @@
 use super::outcome::Outcome;
 use super::wrong::Wrong;
 
-/// The order of a finger whose parts are all at their places.
+/// The order of a finger in which sensor n responds to motor or tendon n.
 pub const RIGHT: [usize; 4] = [1, 2, 3, 4];
 
-/// Whether an exchange of cables explains the order: each part answers at exactly one place.
+/// Whether an exchange of cables explains the order: it is not [`RIGHT`], and each sensor responds to exactly one motor
+/// or tendon.
 pub fn is_exchange(order: [usize; 4]) -> bool {
     let mut sorted = order;
     sorted.sort_unstable();
     sorted == RIGHT && order != RIGHT
 }
 
-/// Whether a part answers at two places. 0 means that no part answers.
+/// Whether a sensor responds to two motors or tendons. 0 in `order` means that no sensor responds.
 pub fn repeats(order: [usize; 4]) -> bool {
     (1..=4).any(|part| order.iter().filter(|&&found| found == part).count() > 1)
 }

@@ -33,7 +33,7 @@ impl Outcome {
         }
     }
 
-    /// Adds something that is wrong, once.
+    /// Adds something that is wrong, unless it was added before.
     pub fn wrong(&mut self, wrong: Wrong) {
         if !self.wrong.contains(&wrong) {
             self.wrong.push(wrong);

@@ -1,4 +1,4 @@
-//! The person who commissions a finger: what the tool asks for, and how it is answered.
+//! The person who commissions a finger: what the tool asks this person to do, and how the person answers.
 
 use super::outcome::Outcome;
 use super::step::Step;

@@ -18,9 +18,9 @@ const WIDTH: usize = 100;
 /// Prompts on standard output, and answers on standard input.
 pub struct Terminal {
     screen: Screen,
-    /// Every request counts as done at once.
+    /// Whether every request counts as done at once.
     yes: bool,
-    /// Nothing is printed, because standard output is for other programs.
+    /// Whether to print nothing, because standard output is for other programs.
     pub quiet: bool,
     /// Retries that are left in this session. With `yes`, what has failed is tried again without a question until this
     /// number is 0.

@@ -41,7 +41,7 @@ pub enum Wrong {
     MotorTorque(usize, f64),
     GaugeReversed(usize),
     GaugeDead(usize),
-    /// Shown tension divided by true tension, with the previous scale.
+    /// Tension that the gauge shows before its scale is corrected, divided by the true tension.
     GaugeScale(usize, f64),
     /// Difference to the configured zero, N.
     GaugeZero(usize, f64),
@@ -71,9 +71,9 @@ pub enum Wrong {
     /// The person could not do what the step needs.
     NotPrepared,
     Computer(String),
-    /// The zeroing at a pose has stopped, with its own text.
+    /// The zeroing at a pose has stopped. The text says why.
     PoseRefused(String),
-    /// A routine has stopped, with its own text.
+    /// A calibration routine has stopped, or has contradicted an earlier step. The text says why.
     Refused(String),
     /// The step has stopped because the finger or the system failed, with the text of this failure.
     Stopped(String),

@@ -1,4 +1,5 @@
-//! Zeros of encoders and gauges, and the tension of each tendon when the finger has become a spring.
+//! Zeros the encoders and gauges. Then compares the tension of each tendon with the intended tension, while the finger
+//! is a spring at rest.
 
 use super::desk::Desk;
 use super::machine::Refused;
@@ -18,7 +19,7 @@ const READING: f64 = 1.0;
 /// Carries out the step `zeros`.
 pub fn zeros(desk: &mut Desk) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    // The motors are off, and the finger has not moved yet, so the gauges show only noise.
+    // The motors are off, and the finger has not moved yet, so only noise changes the readings of the gauges.
     let noise = desk.read(READING)?.noise;
     let scale = desk.finger.gauge.newton_per_count;
     desk.vitals.gauge_noise = Some(std::array::from_fn(|gauge| noise[gauge] * scale[gauge].abs()));

@@ -8,7 +8,7 @@ use sun2xp::hand::priority;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
 
-/// Time that the threads have to become ready before the first period begins, ns.
+/// Time for the threads to become ready before the first period begins, ns.
 const HEAD_START: u64 = 10_000_000;
 
 /// If the 99 % wake-up latency exceeds this fraction of the period, the time left for the replies becomes short.

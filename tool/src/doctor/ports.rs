@@ -19,7 +19,7 @@ use sun2xp::realtime::{
     Clock, CycleStage, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, now, spawn,
 };
 
-/// Fraction of the reply window. If the 99 % round trip exceeds it, little reserve is left.
+/// If the 99th percentile of the round trips exceeds this fraction of the reply window, little reserve is left.
 const LONG: f64 = 0.75;
 
 /// Largest acceptable fraction of lost replies.

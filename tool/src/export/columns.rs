@@ -91,7 +91,7 @@ pub fn columns(row: &Row) -> Vec<Column> {
     const JOINTS: [&str; 3] = ["0", "1", "2"];
     const PARTS: [&str; 4] = ["1", "2", "3", "4"];
     let sample = &row.sample;
-    // In a cycle without the controller, the sample has the values of an earlier cycle.
+    // If the controller did not run in this cycle, its values in the sample do not belong to this cycle.
     let computed = sample.computed.then_some(sample);
     let mut columns = Columns::default();
     columns.one("began", "ns", Value::Whole(sample.began.cast_signed()));

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn every_ageing_is_named_with_its_part() {
+    fn an_ageing_is_named_with_its_part() {
         let only = |kind, part: &str| vec![(kind, part.to_owned())];
         assert_eq!(
             named(|today| today.gauge_zero = Some([200.0, 200.0, 300.0, 200.0])),

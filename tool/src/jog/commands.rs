@@ -110,8 +110,8 @@ impl From<HandError> for Refused {
 }
 
 impl Command {
-    /// Returns whether the command ends a push. Such a command moves nothing by itself. Other commands that wait are no
-    /// reason to refuse or drop it: the push would then go on.
+    /// Returns whether the command ends a push. Such a command moves nothing by itself. It must be carried out even if
+    /// many other commands wait or a stop has come: otherwise the push would go on.
     pub fn ends_push(&self) -> bool {
         matches!(self, Self::Push { force: [0.0, 0.0, 0.0], .. })
     }

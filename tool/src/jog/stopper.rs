@@ -1,4 +1,4 @@
-//! The emergency stop of a person, which also drops the commands that still wait.
+//! The emergency stop that a person triggers. It also drops the commands that still wait.
 
 use super::commands::Command;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Draws the view into a terminal of any size. Drawing changes nothing.
+//! Draws the view into a terminal of any size. Drawing does not change the view.
 
 mod bars;
 mod detail;

@@ -1,5 +1,5 @@
-//! What the terminal shows: the state of a hand, and what the person has chosen. The keys change it, and `draw` shows
-//! it.
+//! What the terminal shows: the state of a hand, and the choices of the person. The keys change the choices, and `draw`
+//! draws the view.
 
 use super::state::{HandState, Tracker};
 use crate::jog::panel::JogPanel;

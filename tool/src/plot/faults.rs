@@ -23,8 +23,8 @@ const ROWS: [(&str, Colour); 4] =
 const LOST: usize = 3;
 
 /// Height of a line of the list below the panels, pixels, and the largest number of marks in this list. A mark may have
-/// several lines. If there are more marks, the list has one mark less than this number, and ends with a line that gives
-/// the number of the marks that are left out.
+/// several lines. If there are more than `MOST_MARKS` marks, the list has `MOST_MARKS - 1` of them, and ends with a
+/// line that gives the number of those left out.
 const LINE: f64 = 23.0;
 const MOST_MARKS: usize = 18;
 

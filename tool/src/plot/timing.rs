@@ -76,7 +76,8 @@ impl Plot for Timing {
     }
 }
 
-/// A histogram of one of the times of the cycles. Both axes are logarithmic, so that single late cycles are visible.
+/// A histogram of the times that `of` selects, one for each cycle. Both axes are logarithmic, so that single late
+/// cycles are visible.
 fn histogram(name: &str, fingers: &[(usize, &Times)], of: fn(&(f64, f32, f32)) -> f32, period: f64) -> Panel {
     let sorted = fingers.iter().map(|&(index, times)| {
         let mut values: Vec<f32> = times.0.iter().map(of).filter(|time| time.is_finite()).collect();
@@ -113,7 +114,8 @@ fn histogram(name: &str, fingers: &[(usize, &Times)], of: fn(&(f64, f32, f32)) -
     }
 }
 
-/// Counts sorted times in bins of equal ratio: the number of the bin, and the count.
+/// Counts sorted times in bins that are equally wide on a logarithmic axis. Returns the number and the count of each
+/// bin that is not empty.
 fn bins(sorted: &[f32]) -> Vec<(i32, usize)> {
     let mut bins: Vec<(i32, usize)> = Vec::new();
     for &time in sorted {

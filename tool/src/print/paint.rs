@@ -1,4 +1,4 @@
-//! The colours of the output. Every colour also has a word, so that nothing depends on colours alone.
+//! The colours of the output. The text itself says what its colour means, so that nothing depends on colours alone.
 
 use super::Screen;
 use anstyle::{AnsiColor, Style};

@@ -260,7 +260,7 @@ fn delete(path: &Path) -> io::Result<()> {
     }
 }
 
-/// The failure of a file to which the writer of recordings cannot write. The text of the writer's error says only that
+/// The failure if the writer of recordings cannot write to a file. The text of the writer's error says only that
 /// writing failed. So the failure contains the error of the operating system that is the cause of the writer's error.
 fn unwritten(path: &Path, error: &(dyn Error + 'static)) -> Failure {
     match successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<io::Error>()) {

@@ -87,7 +87,7 @@ impl Schedule {
     }
 
     /// Returns a sentence that says why a deadline may be missed at `rate`, Hz, although every deadline is met at a
-    /// higher rate. Returns an empty text if no deadline may be missed at `rate`, or if no higher rate meets every
+    /// higher rate. Returns an empty text if every deadline is met at `rate`, or if no higher rate meets every
     /// deadline.
     fn exception(&self, rate: f64) -> String {
         let violated = self.threads.iter().any(|thread| thread.scheduled.violation.is_some());

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::Vector4;
 
-/// Largest stiffness with which a finger is stable at 1000 Hz with some margin, as a fraction of its smallest stiffness
-/// with locked motors.
+/// Largest Kx at which a finger is stable at 1000 Hz, with some margin, as a fraction of the smallest stiffness that
+/// its tip has while the motors are locked.
 const STABLE_PART: f64 = 0.7;
 
 /// Each motor oscillates on its tendon. This is the least number of servo cycles in one period of the fastest of these

@@ -9,10 +9,11 @@ use sun2xp::nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 /// Number of angles of each joint, from limit to limit.
 const ANGLES: usize = 5;
 
-/// A force that no finger can give, N. The distribution scales it down to what the tensions permit.
+/// A force or a tension that no finger can give, N. The distribution scales such a force down to what the tensions
+/// permit. As the largest permitted tension, it has no effect.
 const TOO_MUCH: f64 = 1e5;
 
-/// The geometry of a finger, in cm.
+/// The geometry of a finger, in cm, the stiffness of its tendons, N/cm, and their lowest tension, N.
 pub struct Mechanics {
     tendons: Tendons,
     stiffness: Vector4<f64>,

@@ -1,4 +1,4 @@
-//! The items of a recording of a simulated hand are complete: every cycle, gap, stage and event.
+//! Tests that the items of a recording of a simulated hand contain every cycle, gap and event, and marks of stages.
 
 use super::{Item, Mark, MarkKind, Row, first_cycle, read};
 use crate::recording::RecordingWriter;
@@ -10,7 +10,7 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, RealTime};
 use sun2xp::telemetry::{Message, Reader, Sample, View};
 
-/// The messages of a hand whose finger 1 moves, up to the first event.
+/// The messages of a hand whose finger 1 moves, until an event has arrived.
 fn messages() -> (Reader, Vec<Message>) {
     let mut configuration = Configuration::default();
     configuration.telemetry.name = format!("trace-{}", std::process::id());

@@ -102,7 +102,7 @@ impl Control {
     fn queue(&self, command: Command, answers: Option<UnboundedSender<Answer>>) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
         let order = Order { command, stops: self.stopper.stops(), answers };
-        // The thread ends only with this value.
+        // The thread receives orders until this value is dropped, so sending does not fail.
         let _ = self.orders.as_ref().map(|orders| orders.send(order));
     }
 }

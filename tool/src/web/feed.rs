@@ -42,7 +42,7 @@ pub fn publish(hub: &Hub, kind: Kind, message: &ToPage) {
     }
 }
 
-/// Publishes what a hand does. Returns why it ended.
+/// Publishes what a hand does. Returns why the hand cannot be read any more.
 fn follow(mut reader: Reader, control: bool, hub: &Hub) -> String {
     let mut translation = Translation::new(reader.description(), control, hub);
     let mut messages = Vec::new();

@@ -52,7 +52,7 @@ pub enum ToPage<'a> {
 /// A hand. The page starts again with this message, unless it already shows the hand with this identity.
 #[derive(Debug, Serialize)]
 pub struct HandMessage<'a> {
-    /// Identifies the hand. It stays the same while the page is disconnected and connects again.
+    /// Identifies the hand. The identity stays the same while the page is disconnected and connects again.
     pub identity: String,
     pub name: &'a str,
     pub process: u32,

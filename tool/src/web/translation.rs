@@ -25,7 +25,7 @@ const STIFFNESS: u64 = 100_000_000;
 /// Smallest change of the stiffness that the page gets, relative to its largest entry.
 const STIFFNESS_CHANGE: f64 = 0.01;
 
-/// Translates for one hand.
+/// Translates the messages of one hand.
 pub struct Translation<'a> {
     hub: &'a Hub,
     view: View,

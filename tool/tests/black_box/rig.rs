@@ -1,4 +1,4 @@
-//! A hand on a board in this process, and a run with every event that a black box records.
+//! A hand on a board in this process, and a run with set points, adjustments and lost replies for its black box.
 
 use crate::pauses;
 use std::path::Path;

@@ -35,10 +35,10 @@ const INSTEAD: [&str; 18] = [
 /// Marks the place of a replacement.
 const MARK: &str = "@instead@";
 
-/// Without [`EVERYTHING`], one in this many of the alterations that change a single place is tried.
+/// If [`EVERYTHING`] is not set, only one in this many alterations of a single place is tried.
 const SAMPLE: usize = 41;
 
-/// Without [`EVERYTHING`], this number of alterations that change several numbers at once is tried.
+/// Number of tried alterations that change several numbers at once, if [`EVERYTHING`] is not set.
 const AT_ONCE: usize = 400;
 
 /// If this variable is set, every alteration is tried, with every controller. The number of alterations that change

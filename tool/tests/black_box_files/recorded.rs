@@ -47,7 +47,8 @@ pub fn record(scheme: Scheme) -> Recorded {
     Recorded { opening, running }
 }
 
-/// The first cycles of a recording, changed so that they contain every kind of input. Their replay shows no difference.
+/// The first cycles of a recording, changed so that they contain every activity, a lost reply, skipped periods, fading,
+/// a restart, and the change to the last controller of the recording. Their replay shows no difference.
 pub fn varied(recording: &Recording) -> Recording {
     let mut varied = recording.clone();
     let (first, last) = (varied.origin.controllers[0].number, varied.origin.controllers.last().expect("one").number);

@@ -1,4 +1,5 @@
-//! CSV files: every number has the recorded bits.
+//! Tests that numbers in CSV files have the recorded bits, and that a refused or failed export leaves the folder as it
+//! was.
 
 use crate::damage::damaged;
 use crate::recorded::{done, recorded, tool};
@@ -7,7 +8,8 @@ use std::fs;
 use std::io::{self, Read};
 use std::process::{Command, Stdio};
 
-/// A CSV file without line feeds in its fields: its header, and its rows by the names of their columns.
+/// Returns the header of a CSV file, and each row as a map from column names to fields. No field may contain a line
+/// feed.
 fn table(text: &str) -> (Vec<&str>, Vec<BTreeMap<&str, String>>) {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
@@ -34,7 +36,7 @@ fn fields(line: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_number_of_a_csv_file_has_the_recorded_bits() {
+fn numbers_of_a_csv_file_have_the_recorded_bits() {
     let recorded = recorded();
     let folder = tempfile::tempdir().expect("a folder");
     let output = folder.path().to_str().expect("a name");

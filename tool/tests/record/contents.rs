@@ -11,7 +11,7 @@ pub struct Contents {
     pub topics: BTreeMap<String, usize>,
     /// The channel of the first message.
     pub first_topic: String,
-    /// For each finger, the numbers of its cycles, as the samples have them.
+    /// For each finger, the cycle numbers of the messages on its channel `/finger<number>/cycle`.
     pub cycles: [Vec<u64>; 3],
     /// For each finger, the number of cycles on the channel for replay.
     pub replayed: [usize; 3],

@@ -50,7 +50,7 @@ fn start(mut command: Command) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the tool runs")
 }
 
-/// Waits until a file has this size.
+/// Waits until a file has at least this size.
 fn wait_for(path: &Path, bytes: u64) {
     let limit = Instant::now() + Duration::from_secs(20);
     while fs::metadata(path).map_or(0, |metadata| metadata.len()) < bytes {
@@ -220,7 +220,8 @@ fn python_reads_the_same_samples() {
     let contents = contents(&fs::read(&file).expect("the file"));
     assert_eq!(read["cycles"], serde_json::json!(contents.cycles.each_ref().map(Vec::len)));
     assert_eq!(read["description"]["name"], name.as_str());
-    // Every value of the last cycle of finger 1 must be the one in the message of telemetry.
+    // Python has decoded the last cycle of finger 1 from the topic `/finger1/cycle`. Its values, except `fault` and
+    // `reserved`, must be those that `contents` computes from `/finger1/replay`.
     let last = contents.last[0].as_ref().expect("a sample");
     let sample = serde_json::to_value(last).expect("numbers");
     let fields = read["last"].as_object().expect("a message");

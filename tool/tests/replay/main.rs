@@ -1,4 +1,5 @@
-//! `sun2xp replay` of recordings: every cycle is recomputed to the last bit, across changes, faults and gaps.
+//! Tests `sun2xp replay`: the recomputed cycles equal the recorded ones to the last bit, also after changes, faults and
+//! gaps.
 
 #[path = "../common/damage.rs"]
 mod damage;

@@ -186,7 +186,7 @@ fn status_describes_the_hand_and_its_faults() {
     assert_eq!((missing.status.code(), missing.stdout.len()), (Some(1), 0));
     assert!(text(&missing.stderr).contains("no hand of this user has the name \"status-none\""));
 
-    // The other open hands of this user are in the list too.
+    // Without a name, the tool describes every open hand of this user. Other tests may have open hands too.
     let _second = open("status-second");
     let all = text(&status(&[]).stdout);
     assert!(all.contains("hand status-test") && all.contains("hand status-second"), "{all}");

@@ -24,7 +24,8 @@ const PIXELS: &str = r"
 /// the rest of the script can read it.
 const NEXT_FRAME: &str = "await new Promise(requestAnimationFrame);";
 
-/// Makes the view narrower, and waits until all observers of its size have been called. This happens in the same frame.
+/// Makes the view narrower, and waits until all observers of its size have been called. They are called in the frame in
+/// which the width changes.
 const NARROWER: &str = r"
     const parent = document.getElementById('hand3d').parentElement;
     await new Promise(requestAnimationFrame);

@@ -20,8 +20,8 @@ const NOTE_COMMANDS: &str = "
     };
 ";
 
-/// Returns a JavaScript expression for the first button with this text. A later panel may have a button with the same
-/// text.
+/// Returns a JavaScript expression for the first button with this text in the control panel. A later row of the panel
+/// may have a button with the same text.
 fn button(text: &str) -> String {
     format!("[...document.querySelectorAll('#control button')].find((one) => one.textContent === '{text}')")
 }
@@ -163,7 +163,7 @@ fn a_button_whose_push_was_refused_does_not_stay_pressed() {
     press(&browser, PUSH, strong, &format!("return (() => {{ {refused} }})() && 'refused'"));
     browser.wait_for(&format!("return !{PUSH}.classList.contains('held')"));
     release(&browser);
-    // The answer to the end of the push arrives meanwhile.
+    // In this time, the answer to the end of the push arrives. It must not replace the message of the refusal.
     browser.run("await new Promise((resolve) => setTimeout(resolve, 600))");
     assert_eq!(browser.run(refused), true);
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Number of batches that a page may have received without an acknowledgement.
+/// Largest number of batches that the server sends to a page beyond those that the page has acknowledged.
 const AHEAD: usize = 20;
 
 #[test]

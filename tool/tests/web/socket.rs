@@ -43,7 +43,8 @@ impl Socket {
         }
     }
 
-    /// Sends a text. The server may close the connection before it has read the whole text.
+    /// Sends a text. A failed write is ignored, because the server may close the connection before it has read the
+    /// whole text.
     pub fn send(&mut self, text: &str) {
         let length = text.len();
         let mut frame = vec![0x81];

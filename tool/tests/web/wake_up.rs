@@ -10,7 +10,7 @@ use std::time::Duration;
 use sun2xp::realtime::{CycleStage, Distribution};
 use sun2xp::{Hand, RealTime};
 
-/// Number of measurements without the programs, and of measurements with them. The two kinds alternate.
+/// Number of measurements of each kind: without the programs and with them. The two kinds alternate.
 const TURNS: usize = 12;
 
 /// Duration of a measurement.

@@ -181,7 +181,7 @@ class RemoteHand(Reading):
             fingers: a finger, or several. The default is all fingers to which this client has sent something.
             condition: "applied": the server has taken the set point. "arrived": since the set point was sent, there was
                 a cycle in which every joint was at the set point. "settled": since it was sent, the joints have come to
-                rest. Both conditions still hold if the finger was pushed away afterwards.
+                rest. Both "arrived" and "settled" still hold if the finger was pushed away afterwards.
             timeout: time limit, s. Without it, the wait has no limit.
 
         Raises:
@@ -286,7 +286,7 @@ class RemoteHand(Reading):
         if action != "release":
             self._check(*([finger] if finger else []))
         payload = _messages.write_request(action, finger, epoch, **flags)
-        # If the get were repeated, a calibration that has ended meanwhile would begin again.
+        # A calibration is requested only once: a repeated request could start it again after it has ended.
         ask = self._network.get if action in ("calibrate", "identify") else self._answers
         for _, reply in ask(f"{self._prefix}{action}/{self._network.client}", payload, timeout):
             answer = _messages.read_answer(reply)

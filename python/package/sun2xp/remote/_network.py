@@ -119,8 +119,8 @@ def configuration(endpoint: str, tls: Optional[Tls]) -> Dict[str, Any]:
 class Network:
     """A connection to a server or to a router, from `sun2xp.remote.connect`.
 
-    Several hands can be used over one connection. One thread repeats the targets of all of them, with one time
-    stamp. Leaving a `with` block closes the hands and the connection.
+    Several hands can be used over one connection. One thread repeats the targets of all these hands. The targets
+    that it sends at the same time have the same time stamp. Leaving a `with` block closes the hands and the connection.
 
     Args:
         endpoint: where the server or the router listens, such as "tls/cell:7447".

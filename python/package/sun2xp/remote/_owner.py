@@ -99,8 +99,8 @@ class Owner:
         return sorted(self._slots)
 
     def holds(self, finger: int, bits: int) -> bool:
-        """Returns whether the server has applied or refused every command of this client to a finger in this epoch, and
-        the newest record of this epoch has these bits."""
+        """Returns whether the server has applied or refused every command of this client to this finger in this epoch,
+        and the finger's newest record of this epoch has these bits."""
         slot = self._slots.get(finger)
         if slot is None:
             return finger in self._bits and self._bits[finger] & bits == bits

@@ -12,8 +12,8 @@ from .._types import Array, SetPoint
 from ._messages import JOINTS, MOST_POSES, NO_PLACE, PATH, TIP, Part
 from ._types import FingerStatus
 
-#: Relative rounding of `float32`. A joint angle may exceed its limits by this fraction of the larger of their two
-#: magnitudes. Kx may exceed its bound by eight times this fraction.
+#: Relative rounding of `float32`. A joint angle may exceed a limit by this fraction of the larger magnitude of the
+#: joint's two limits. Kx may exceed its bound by eight times this fraction of the bound.
 _ROUNDING = float(numpy.finfo(numpy.float32).eps)
 
 #: The asymmetry of Kx that counts as rounding, relative to its largest entry. The hand has the same tolerance.

@@ -1,4 +1,4 @@
-"""The reading part of a remote hand: everything that needs no ownership. State and Answer are messages of
+"""The part of a remote hand that reads. It needs no ownership. State, Status, Request and Answer are messages of
 docs/remote-protocol.md."""
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ._types import FingerState, FingerStatus, Status, Tip, status
 
 
 class Reading:
-    """What RemoteHand reads."""
+    """The calls of RemoteHand that read."""
 
     def __init__(self, network: Network, name: str, *, stale: float) -> None:
         self._network = network

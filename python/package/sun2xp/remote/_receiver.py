@@ -18,7 +18,7 @@ from . import _messages
 from ._errors import Stale
 from ._messages import STAGES, State
 
-#: Number of States that are kept for `cycles`: 5 s, because the server publishes a State every 5 ms.
+#: Number of States that are kept for `Receiver.take`: 5 s, because the server publishes a State every 5 ms.
 _KEPT_STATES = 1000
 
 #: Number of events that a queue keeps.

@@ -26,8 +26,8 @@ class Slot:
 
     def __init__(self) -> None:
         #: The part that Targets repeat; None if there was no command, or if the newest one was refused. After a
-        #: refusal an earlier part must not be sent again: its command number differs from the last one, so the server
-        #: would apply it as a new part.
+        #: refusal an earlier part must not be sent again: the server applies a part if its command number differs from
+        #: the last one that it applied, so it may apply the earlier part as a new one.
         self.part: Optional[Part] = None
         #: Changes that no Target has yet.
         self._waiting: Optional[Part] = None

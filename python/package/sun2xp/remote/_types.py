@@ -1,5 +1,5 @@
-"""The results of the calls of a remote hand. Lengths are in cm, forces in N, angles in rad, stiffnesses in N/cm. Times
-are in ns of the server's clock, unless a field says otherwise."""
+"""The results of the calls of a remote hand, and the files for its TLS connection. Lengths are in cm, forces in N,
+angles in rad, stiffnesses in N/cm. Times are in ns of the server's clock, unless a field says otherwise."""
 
 from __future__ import annotations
 

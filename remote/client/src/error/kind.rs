@@ -32,9 +32,10 @@ pub enum RemoteErrorKind {
     NotOwner,
     /// The hand has refused an earlier set point, or a request.
     Refused,
-    /// The server is shutting down, or cannot make an epoch.
+    /// The server is shutting down, or has no random number for an epoch, the secret of a new owner of the hand.
     Closed,
-    /// The server does not support this version of the protocol.
+    /// The server has sent data that is not a message of this version of the protocol, or has answered that a request
+    /// is malformed or has another version.
     Protocol,
     /// The configuration cannot be used.
     Configuration,
@@ -80,7 +81,7 @@ impl RemoteError {
         Some(i32::from(finger.number()))
     }
 
-    /// The number of the fault that has stopped the finger; 0 for other errors.
+    /// The number of the fault that has stopped the finger; 0 if the error does not contain this number.
     #[must_use]
     pub fn fault(&self) -> u16 {
         match self {

@@ -1,4 +1,4 @@
-//! Checks whether a hand can be read and commanded now.
+//! Checks whether a hand can be read and commanded now. State and Status are messages of docs/remote-protocol.md.
 
 use super::Exchange;
 use crate::admission::{admit, admit_path, by_finger};

@@ -6,7 +6,7 @@ use sun2xp_remote_client::{ClientName, Counts, Event, Finger, FingerStatus, Reco
 use sun2xp_remote_protocol::{Action, Answer, Code, FaultText, Place, Request, State, Target};
 use zenoh::Session;
 
-/// The clock of the machine: a server that is started again does not set it back.
+/// Zero of the machine's clock. A server that is started again does not set this clock back.
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 pub struct FakeHand {
@@ -30,9 +30,9 @@ pub struct FakeHand {
     pub unanswered_after: Duration,
     /// Number of gets of the Status that get no reply.
     pub unanswered_status: usize,
-    /// The version byte of its Status.
+    /// The version byte of the hand's Status.
     pub version: u8,
-    /// The number of States after a recovery that are not published, so that the newest State of the clients is from
+    /// Number of States that are withheld after a recovery. Meanwhile the newest State that the clients have is from
     /// before the recovery.
     pub late_states: usize,
     /// Whether the server publishes nothing.
@@ -71,7 +71,7 @@ impl FakeHand {
         1 + BEGIN.elapsed().as_nanos() as u64
     }
 
-    /// Takes a Target of the epoch in force. Returns the refusal, if it is refused.
+    /// Takes a Target of the epoch in force. If the Target is refused, returns the refusal.
     pub fn take(&mut self, target: Target) -> Option<Answer> {
         if self.owner.is_none() || target.epoch != self.epoch {
             return None;

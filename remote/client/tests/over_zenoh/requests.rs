@@ -15,7 +15,7 @@ fn the_first_get_of_the_status_is_repeated() {
     assert_eq!((hand.fingers().len(), server.hand().lock().unanswered_status), (2, 0));
 }
 
-/// The first calibration may have been carried out, and its answer lost.
+/// The server may have carried out a calibration whose answer was lost. A repeated request would calibrate again.
 #[test]
 fn a_calibration_is_not_repeated() {
     let port = free_port();
@@ -29,7 +29,8 @@ fn a_calibration_is_not_repeated() {
     assert!(requests.iter().all(|request| request.action == Action::Acquire), "{requests:?}");
 }
 
-/// A request that reaches nobody ends at once. If it ends later without an answer, the connection was lost.
+/// Zenoh ends a request at once if it reaches no server. So the server may have carried out a request that ends later
+/// without an answer.
 #[test]
 fn a_request_that_may_have_been_carried_out_is_not_repeated() {
     let port = free_port();

@@ -8,7 +8,8 @@
 
 static sun2xp_hand *hand;
 
-/* The number of the finger's fault. sun2xp_fault is repeated, because a busy machine can delay the newest cycle. */
+/* Returns the number of the finger's fault. On a busy machine, the newest cycle that has arrived may be too old. Then
+   sun2xp_fault fails, so it is repeated. */
 static int fault(int finger)
 {
     struct sun2xp_fault fault;

@@ -1,5 +1,5 @@
-/* Calls that do not reach a hand on another machine: each returns -16, sets errno to
-   ENOTSUP, and changes nothing. */
+/* Calls that a hand on another machine does not support. Each must return -16. Those with a handle must also set errno
+   to ENOTSUP, and report their name and the reason. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Polls the position, in arrays of double, until the finger has reached each goal. */
+/* Sends three goals. After each one, polls the position until the finger has reached it. All arrays are of double. */
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>

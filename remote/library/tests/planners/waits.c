@@ -1,4 +1,4 @@
-/* Waits for a finger that is being zeroed, and stops the zeroing. */
+/* Calls sun2xp_wait for a finger that is being zeroed (refused with EBUSY), and then stops the zeroing. */
 #include <errno.h>
 #include <pthread.h>
 #include <stdio.h>

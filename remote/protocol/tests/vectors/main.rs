@@ -41,7 +41,7 @@ fn the_file_is_what_the_codec_makes() {
 }
 
 #[test]
-fn every_line_of_the_file_is_json_and_agrees_with_the_codec() {
+fn the_messages_of_the_file_agree_with_the_codec() {
     let file = fs::read_to_string(path()).expect("remote/vectors.json can be read");
     let vectors: serde_json::Value = serde_json::from_str(&file).expect("JSON");
     let section = |name: &str| vectors[name].as_array().expect("an array").clone();

@@ -1,4 +1,5 @@
-//! Good messages of every type, with edge values, and their fields.
+//! Lists good messages of every type, some of them with edge values. Each line has the payload of a message and the
+//! values of its fields.
 
 use crate::examples::{
     ONE, THREE, TWO, answer, event, faulted, finger_status, full_part, part, path, record, request, state, status,

@@ -1,11 +1,13 @@
-//! Continuations of the reference: with another time constant, and along another path.
+//! Keeps the reference continuous when the time constant of its filter changes, or when another path replaces the path
+//! that it follows.
 
 use super::{ORDER, Reference, ReferenceMotion, ReferenceState};
 use crate::control::motion::Motion;
 use nalgebra::Vector3;
 
-/// Largest distance of a stage from the reference after the time constant has become longer, relative to the largest
-/// such distance before. At full speed, a change of the time constant from 0.008 s to 0.02 s does not reach this bound.
+/// Largest distance of the output of a stage from the output of the last stage after the time constant has become
+/// longer, in multiples of the largest such distance before the change. At full speed, a change of the time constant
+/// from 0.008 s to 0.02 s does not reach this bound.
 const STRETCH: f64 = 3.0;
 
 impl Reference {
@@ -31,7 +33,8 @@ impl Reference {
             let ReferenceMotion { joints, rates, accelerations, jerk, snap } = previous.motion(state);
             ReferenceState::of(&joints, &Motion { rates, accelerations, jerk, snap }, self.lag)
         };
-        // A set point that moves keeps its motion. The conversion may change only the motion of the deviation.
+        // A set point that moves keeps its motion. The conversion may change only the motion of the deviation, which is
+        // the reference minus this set point.
         let moved = along.unwrap_or_default();
         let deviation = state.combine(&moved, |stage, moved| stage - moved);
         let mut input = *anchor - moved.0[0];
@@ -135,7 +138,7 @@ mod tests {
                 all.push(filter.motion(&state));
             }
             let [rates, accelerations] = largest_jumps(&all);
-            // A cycle is as long as the time constant of a filter of 1 ms, so the motion changes a lot within a cycle.
+            // The time constant of 1 ms is as long as a cycle, so the motion changes a lot within a cycle.
             let most = if time < 0.002 { [1.5, 1500.0] } else { [0.3, 100.0] };
             assert!(rates < most[0] && accelerations < most[1], "{time} {cycles}: {rates} {accelerations}");
             let fastest = all.iter().fold(0.0f64, |fastest, motion| fastest.max(motion.rates.amax()));
@@ -203,7 +206,7 @@ mod tests {
         }
     }
 
-    /// A path that arrives late is 0.02 rad away from the path that it replaces.
+    /// The new path is 0.02 rad away from the path that it replaces, like a path that arrives late.
     #[test]
     fn a_path_that_replaces_another_one_is_reached_through_the_filter() {
         let (filter, slew) = (Reference::new(0.008, RATE), Slew::new(5.0, RATE));

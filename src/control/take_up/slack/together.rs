@@ -18,8 +18,7 @@ const COMPLETE: f64 = 0.1;
 /// Largest excess over the pretension with which the take-up is complete, as a fraction of the pretension. The excess
 /// is permitted because the tensions of a finger at its stops differ from the pretension.
 const TOO_HIGH: f64 = 0.5;
-/// Tension, as a fraction of t_min, below which a tendon counts as having too little tension. It applies even if the
-/// common tension is right.
+/// A tension below this fraction of t_min is too low, even if the common part of the tensions is right.
 const LEAST: f64 = 0.9;
 
 /// A tendon is not slack if its tension exceeds its tare by more than this fraction of the pretension.
@@ -76,9 +75,9 @@ impl SlackTakeUp {
         slack.touched = taut;
         slack.holds = [false; 4];
         slack.gauges.iter_mut().zip(travel).for_each(|(gauge, &travel)| gauge.restart(travel));
-        // The finger may have moved since the tendons were taut, so that their travels belong to several poses. Two
-        // tendons can then pull against each other and hold the finger at a stop. This could happen in every attempt.
-        // So from the second attempt on, the tendons that pull are let out from where they are now.
+        // The finger may have moved between the moments at which the tendons came taut. Their travels then belong to
+        // different poses, and two tendons can pull against each other and hold the finger at a stop. This could happen
+        // in every attempt. So from the second attempt on, the tendons that pull are let out from where they are now.
         let let_out = std::mem::replace(&mut slack.touches_again, true);
         for tendon in (0..4).filter(|&tendon| let_out && taut[tendon]) {
             let stretch = self.stretch[tendon] * slack.tensions[tendon] / self.pretension[tendon];

@@ -36,7 +36,7 @@ fn a_surface_of_a_finger_replaces_a_surface_of_another_kind() {
     let [Some(Surface::Ball { .. }), Some(Surface::Wall { .. }), Some(third)] = surfaces else {
         panic!("{surfaces:?}");
     };
-    // The ball of finger 3 keeps the other values of the ball of all fingers.
+    // The ball of finger 3 has its other values from the ball that is configured for all fingers.
     assert_eq!(third, Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 3.0, stiffness: 30.0 });
 }
 

@@ -65,7 +65,7 @@ pub struct World {
     pub report: Report,
     frozen: Option<i32>,
     random: u64,
-    /// The stiffness that the search for the bound finds, N/cm.
+    /// The bound of Kx, N/cm. In these tests, the search for the bound returns this value and computes nothing.
     pub bound: f64,
     /// How many of the next readings and routines fail.
     pub lost: (usize, usize),

@@ -1,5 +1,5 @@
-//! Twenty kinds of wrong wiring, each on several hands, poses and parts. The commissioning must name each one, and
-//! nothing else.
+//! Twenty kinds of wrong wiring, each on several hands, poses and parts. In at least 98 % of the cases, the
+//! commissioning must name what is wrong, and nothing else.
 
 use super::bench::{Wiring, World};
 use super::finger::{Bench, Helper};

@@ -1,4 +1,4 @@
-//! Mistakes of the person, lost replies, and parts that are out of their range.
+//! Tests how the steps of commissioning react to mistakes of the person, to lost replies, and to parts out of range.
 
 use super::bench::{Wiring, World};
 use super::finger::{Bench, Helper};
@@ -118,7 +118,7 @@ fn a_step_that_is_given_up_is_noted() {
 
 /// The person's hand may be in the way of the finger.
 #[test]
-fn nothing_moves_if_the_person_cannot_prepare_it() {
+fn nothing_moves_if_the_person_cannot_prepare_the_step() {
     for (doing, cannot) in [
         (Step::Motors, (|act| act == Act::HoldStill) as fn(Act) -> bool),
         (Step::Zeros, |act| matches!(act, Act::HoldPose(_) | Act::LetGo)),
@@ -238,7 +238,8 @@ fn a_lowered_stiffness_and_its_limit_are_reported() {
     assert!(finger.initial_stiffness().symmetric_eigenvalues().max() <= 0.4 + 1e-9);
 }
 
-/// If the finger trembles or nobody holds it, the message names the likely cause and the way out.
+/// Nobody holds the finger. The remedy is the same as for a held finger that trembles: it names the likely cause of the
+/// trembling and the way out.
 #[test]
 fn a_refused_pose_says_how_to_zero_at_the_stops() {
     let (world, mut belief) = world(|_| ());
@@ -247,7 +248,7 @@ fn a_refused_pose_says_how_to_zero_at_the_stops() {
     person.holds = false;
     let (outcome, _) = step(Step::Zeros, &world, &mut person, &belief);
     let [wrong @ Wrong::PoseRefused(_)] = &outcome.wrong[..] else { panic!("{outcome:?}") };
-    for part in ["because its gauges lag", "leave with q", "start the tool again"] {
+    for part in ["because the signals of its gauges arrive too late", "leave with q", "start the tool again"] {
         assert!(wrong.remedy().contains(part), "{}", wrong.remedy());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Wrong;
 
-/// Distance of a gauge zero from the end of the converter's range that is enough for drift and noise, counts.
+/// Distance between a gauge zero and the end of the converter's range, counts. It is enough for drift and noise.
 const MARGIN: f64 = 100.0;
 
 impl Wrong {

@@ -1,4 +1,4 @@
-//! What is wrong, in words.
+//! The text of each [`Wrong`], for the user.
 
 use super::Wrong;
 use std::fmt::{self, Display, Formatter};
@@ -17,8 +17,8 @@ fn parts(order: &[usize; 4]) -> String {
     }
 }
 
-/// Lists what was seen at each part. The list is used if it is not certain that an exchange of cables explains the
-/// order.
+/// Lists what was seen at each part. The list is used if it is not certain that an exchange of cables explains what was
+/// seen.
 fn listed(order: &[usize; 4], text: fn(usize, usize) -> String) -> String {
     (1..).zip(order).map(|(place, &found)| text(place, found)).collect::<Vec<_>>().join(", ")
 }

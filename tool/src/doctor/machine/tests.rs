@@ -45,7 +45,7 @@ fn a_good_machine_is_good() {
 }
 
 #[test]
-fn every_fault_is_found_alone_with_its_remedy() {
+fn each_defect_is_found_alone_with_its_remedy() {
     use Rating::{Failure, Warning};
     let limits = |memory, priority| {
         format!("Max locked memory  {memory}  {memory} bytes\nMax realtime priority  {priority}  0\n")
@@ -91,8 +91,8 @@ fn capabilities_replace_limits_and_enforcing_makes_failures() {
     assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
 }
 
-/// The rings of the servos are locked, and grow with the rate. The limit that the doctor requires must be higher than
-/// the locked memory that docs/real-time.md states.
+/// The ring buffers of the servos are in locked memory, and their size grows with the rate. The limit that the doctor
+/// requires must be higher than the locked memory that docs/real-time.md states.
 #[test]
 fn the_locked_memory_that_is_needed_depends_on_the_rate() {
     let limits = |mebibytes: u64| {

@@ -1,4 +1,4 @@
-//! The commands, with the simulated hand.
+//! Tests the commands with the simulated hand.
 
 use super::*;
 use std::time::{Duration, Instant};

@@ -20,8 +20,8 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, hand: &HandState, 
     let mut lines: Vec<Line> = Vec::new();
     let age = |event: &EventState| time.saturating_sub(event.monotonic) as f64 * 1e-9;
     let mut newest: Vec<&EventState> = hand.events.iter().take(MOST).collect();
-    // Ages are compared in whole seconds. Events that repeat within a second all have the age 0, so they keep their
-    // order and can be read.
+    // Ages are compared in whole seconds. The age of an event that repeats within a second is always 0, so such events
+    // keep their order and can be read.
     newest.sort_by_key(|event| age(event) as u64);
     for event in newest.into_iter().take(inner.height.into()) {
         let age = span(age(event));

@@ -1,4 +1,4 @@
-//! Rate, wake-up delays and losses of the fingers, and the histogram of the wake-up delays.
+//! Draws the rate, the wake-up delays and the losses of the fingers, and the histogram of the wake-up delays.
 
 use super::bars;
 use super::palette::Palette;

@@ -1,4 +1,4 @@
-//! Random losses of Targets, and confirmations that are late or lost.
+//! Tests an outbox whose Targets are lost and whose confirmations are delayed at random.
 
 use super::*;
 
@@ -43,8 +43,8 @@ impl Random {
     }
 }
 
-/// Whatever Targets and confirmations are lost or late, the finger ends with the newest values, and no path begins more
-/// often than it was sent.
+/// Whichever Targets are lost, and however late confirmations arrive, the finger ends with the newest values, and no
+/// more paths begin than were sent.
 #[test]
 fn the_newest_values_arrive() {
     let mut random = Random(1);
