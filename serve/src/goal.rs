@@ -23,7 +23,7 @@ pub enum Destination {
     },
 }
 
-/// What the owner wants of one finger, in its epoch.
+/// What the owner of the hand wants of one finger.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Goal {
     /// The command number that was taken last; 0 if none in this epoch.
@@ -61,8 +61,8 @@ impl Goal {
         (self.command, self.before) = (0, (0, 0));
     }
 
-    /// Begins the epoch of another owner, who has not commanded the finger yet. What the finger followed is remembered
-    /// in case it is caught.
+    /// Begins the epoch of another owner, who has not commanded the finger yet. If a place was sent to the finger in
+    /// full, it is kept: a finger that is caught before its next command returns to this place.
     pub fn begin_epoch(&mut self) {
         let kept = match self.destination {
             Destination::None => self.kept,

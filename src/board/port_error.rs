@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn every_errno_of_the_system_is_kept_and_its_text_has_a_remedy() {
+    fn each_of_these_errnos_is_kept_and_its_text_has_a_remedy() {
         for (errno, word) in [
             (libc::ENOENT, "check the cable"),
             (libc::EACCES, "dialout"),

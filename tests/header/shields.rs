@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Keywords of C and C++ in `src/capi/header/after.h`, the part of the header after the declarations.
+/// Keywords of C and C++ in `src/capi/header/after.h`, the part of the header after the declarations. `_Generic` and
+/// `default` are not listed: they stand only in macros of the header, which are expanded after the planner's macros have
+/// been restored.
 const KEYWORDS_OF_AFTER: &[&str] = &[
     "char",
     "class",
@@ -24,8 +26,9 @@ const KEYWORDS_OF_AFTER: &[&str] = &[
     "volatile",
 ];
 
-/// Three of these names are macros of the header itself, so the header cannot restore a planner's macro with such a
-/// name. The macros of the header use the other three names.
+/// Names whose macros are neither saved nor restored. SendPos, SendKx and GetPos can be macros of the header itself, so
+/// the header cannot restore a planner's macros with these names. The macros of the header expand to the other three
+/// names, so a restored macro with such a name would change the calls.
 const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
 /// Returns all [`KEYWORDS_OF_AFTER`], and every name in `code` (the declarations) that is not one of [`MACROS`].

@@ -45,8 +45,8 @@ pub struct Arguments {
 /// hand if there is none.
 ///
 /// # Errors
-/// Returns an error if there is no terminal, if the terminal fails, if several hands are open and none is named, or if
-/// the page cannot be served.
+/// Returns an error if the page cannot be served. Without `--web`, returns an error if there is no terminal, if the
+/// terminal fails, or if several hands are open and none is named.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.web {
         return web::serve(web::listen(&arguments.address)?, Wanted::Named(arguments.name.clone()), None);

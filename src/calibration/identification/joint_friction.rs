@@ -114,8 +114,8 @@ impl JointFriction {
             };
             level(true) - level(false)
         });
-        // The newtons per count of the gauges, relative to their mean. Gains whose weighted mean is 1 do not change the
-        // mean of the newtons per count.
+        // The weights are the newtons per count of the gauges, relative to their mean. Factors on the newtons per count
+        // whose weighted mean is 1 do not change the mean of the newtons per count.
         let weights = instruments.newton_per_count.abs();
         let weights = weights / weights.mean();
         let relative = |rise: &Vector4<f64>| {
@@ -129,6 +129,7 @@ impl JointFriction {
         let compared = gains / gains.mean();
         match compared.iter().position(|gain| !GAINS.contains(gain)) {
             Some(index) => {
+                // The error has the gain as counts per newton, which is the reciprocal of the factor.
                 let what = "the gain relative to the other gauges";
                 Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / compared[index] })
             }
