@@ -13,8 +13,8 @@ use std::ffi::c_int;
 /// sun2xp_send_joint_stiffness - turn the joints of a finger into springs
 ///
 ///   finger      1 to 3
-///   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
-///               the torque of joint row for a deflection of joint column from its set point, N cm/rad
+///   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [i][j] is the
+///               torque of joint i for a deflection of joint j from its set point, N cm/rad
 ///
 /// The torque of the joints is stiffness (d - p), with the desired angles d and the measured angles p of
 /// joints 0, 1 and 2. The stiffness takes effect like Kx, without a jump in torque: 95 % of the change has
@@ -23,8 +23,8 @@ use std::ffi::c_int;
 /// of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
 /// as for sun2xp_send_stiffness. It may be zero.
 ///
-/// The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
-/// last link: by default 96 N cm/rad if the servo rate (hand.rate) is 1000 Hz or more, and 80 N cm/rad
+/// The largest eigenvalue may be at most the bound of Kx times the square of the length of the last
+/// link: by default 96 N cm/rad if the servo rate (hand.rate) is 1000 Hz or more, and 80 N cm/rad
 /// otherwise. This is the stiffness that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
 ///
 /// Returns 0, or a negative number with

@@ -26,7 +26,8 @@ const DIRECTIONS: [[f64; 3]; 2] = [[1.0, 0.5, 1.0], [1.0, -0.5, -1.0]];
 const MOTIONS: [(usize, bool, f64); STROKES] =
     [(0, false, SLOW), (0, false, FAST), (0, true, FAST), (1, true, FAST), (1, false, FAST)];
 
-/// At the higher level, tension of the tendon with the largest pretension, as a fraction of t_max.
+/// The higher level of tension: that of the tendon with the largest pretension, as a fraction of t_max
+/// (`tendon.maximum`).
 const HIGH: f64 = 0.4;
 /// Rate at which the common tension changes, N/s.
 const RISING: f64 = 10.0;

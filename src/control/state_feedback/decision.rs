@@ -50,7 +50,7 @@ struct JointTorques {
     all: Vector3<f64>,
 }
 
-/// The dither of the tensions, N, and its rate, N/s.
+/// The dither of the joints and the dither of the tensions, together as tensions, N, and their rates, N/s.
 struct Shake {
     tensions: Vector4<f64>,
     rates: Vector4<f64>,
@@ -74,7 +74,7 @@ impl StateFeedback {
         if begins {
             self.begin_without_deflection(state);
         }
-        let mut now = self.at_next_sample(state);
+        let mut now = self.predicted_motion(state);
         if begins {
             state.periodic_disturbance = self.periodic_disturbance.start(&now.disturbances);
         }
@@ -111,7 +111,7 @@ impl StateFeedback {
         state.tension_dither = self.tension_dither.start();
     }
 
-    fn at_next_sample(&self, state: &StateFeedbackState) -> FingerMotion {
+    fn predicted_motion(&self, state: &StateFeedbackState) -> FingerMotion {
         let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
         let of = |part: fn(&TendonMotion) -> f64| Vector4::from_fn(|tendon, _| part(&motion[tendon]));
         let speeds = of(|motion| motion.speed);

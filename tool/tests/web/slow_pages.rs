@@ -18,7 +18,7 @@ fn a_page_that_does_not_acknowledge_gets_the_batches_of_one_second_and_then_wait
     let open = || Socket::open(program.address(), "/stream", &[]).expect("a socket");
     let (mut slow, mut quick) = (open(), open());
     let first = (0..AHEAD).map(|_| batch(&mut slow, false)).last().expect("a batch");
-    // The quick page reads more batches than the hub keeps.
+    // The quick page reads more batches than the server keeps for a page that is behind.
     let mut numbers = Vec::new();
     while numbers.len() < 100 {
         numbers.push(batch(&mut quick, true)["number"].as_u64().expect("a number"));

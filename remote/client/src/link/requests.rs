@@ -15,7 +15,7 @@ const ANSWER: Duration = Duration::from_secs(30);
 /// is cut.
 const QUICK_ANSWER: Duration = Duration::from_secs(3);
 
-/// Longest wait for the end of a calibration. By the protocol, it takes up to ten minutes.
+/// Longest wait for the end of a calibration. By the protocol, clients wait for up to ten minutes.
 const CALIBRATION: Duration = Duration::from_secs(610);
 
 /// Attempts of a get that reaches nobody, and the pause between them. Just after a client has connected, Zenoh may not
@@ -44,8 +44,8 @@ impl Link {
         };
         let Some(payload) = reply? else {
             let reason = format!(
-                "the request `{}` has no answer. Check the line, and whether the client {} has the permission \
-                 \"command\" in [serve.clients] of the server (a stop needs only \"read\")",
+                "the request `{}` has no answer. Check the line and the server, and whether the client {} has the \
+                 permission \"command\" in [serve.clients] of the server (a stop needs only \"read\")",
                 action.name(),
                 self.client
             );
