@@ -42,8 +42,8 @@ fn the_page_has_the_table_of_the_library() {
 #[test]
 fn numbers_of_events_never_change() {
     assert!(EventKind::ALL.len() >= 17);
-    // Programs may have been compiled with these numbers. A change of any other number changes the committed page and
-    // header.
+    // Programs may have been compiled with the number of any kind. This test checks three numbers. A change of another
+    // number also changes the committed page and header.
     for (kind, number) in [(EventKind::Contact, 5), (EventKind::Settled, 12), (EventKind::Fault, 13)] {
         assert_eq!(kind.number(), number);
     }

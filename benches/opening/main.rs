@@ -121,13 +121,15 @@ fn calls(library: &Path) -> Result<Vec<Row>, Box<dyn Error>> {
     // SAFETY: the path is a C string. The library has no initializers that need preparation.
     let handle = unsafe { libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL) };
     if handle.is_null() {
-        return Err(format!("{} cannot be loaded", library.display()).into());
+        // SAFETY: dlerror returns a C string after dlopen has failed.
+        let cause = unsafe { CStr::from_ptr(libc::dlerror()) }.to_string_lossy().into_owned();
+        return Err(format!("{} cannot be loaded: {cause}", library.display()).into());
     }
     let mut rows = vec![row("load the shared library", &mut begin)];
     let call = |name: &CStr| {
         // SAFETY: the handle is valid, and the library is never unloaded.
         let address = unsafe { libc::dlsym(handle, name.as_ptr()) };
-        assert!(!address.is_null(), "{name:?} is exported");
+        assert!(!address.is_null(), "{} does not export {name:?}: give another --library", library.display());
         address
     };
     // SAFETY: the header declares the calls with this signature.

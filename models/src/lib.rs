@@ -95,7 +95,7 @@ mod finger {
     pub use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
     pub use validity::Validity;
 
-    /// Takes the place of the controller, which is larger than the stack that loom gives a thread.
+    /// Takes the place of the controller, of which several copies would not fit on the stack that loom gives a thread.
     #[derive(Clone)]
     pub struct Adjustable {
         pub number: u32,

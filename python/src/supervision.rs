@@ -38,7 +38,7 @@ impl Hand {
     }
 
     /// Makes a faulted finger a spring again. The finger holds its present pose at its initial stiffness. The cause of
-    /// the fault must be removed first. Does nothing if the finger is not faulted.
+    /// the fault must be removed first. If the finger is not faulted, only waits for a recovery by another call.
     fn recover(&self, py: Python<'_>, #[pyo3(from_py_with = arguments::finger)] finger: i32) -> PyResult<()> {
         // After a stop, this call waits until the servo has carried out the stop.
         let recovering = self.slow(py, |hand| Recovering::begin(hand, finger))?;

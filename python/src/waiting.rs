@@ -11,7 +11,7 @@ use sun2xp::realtime::SignalsBlocked;
 /// Longest time between two checks for signals that Python has received.
 pub const SLICE: Duration = Duration::from_millis(20);
 
-/// Stack of a thread that makes a call. Opening a hand needs more than the 256 KiB of the library's threads.
+/// Stack of a thread that makes a call. Opening a hand needs more than 512 KiB.
 const STACK_BYTES: usize = 2 << 20;
 
 /// Interval at which a condition is polled.

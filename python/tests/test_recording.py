@@ -71,7 +71,7 @@ def test_a_black_box_has_the_last_cycles(hand):
     assert "finger 1" in repr(box)
 
 
-def test_a_recording_without_cycles_becomes_an_empty_table(hand):
+def test_a_black_box_without_cycles_has_empty_arrays(hand):
     hand.stop(1)
     box = hand.black_box(1)
     box.cycles = {1: box.cycles[1][:0]}

@@ -1,9 +1,10 @@
 //! A serial port for a servo.
 //!
-//! The port is read and written through its raw descriptor. No wait changes the signal mask, so no signal handler of a
-//! planner runs on the servo thread. No read or write allocates memory or waits past its deadline. Every read, write
-//! and flush of an open port first checks the descriptor: if another part of the program has closed it, its number may
-//! now belong to a file of the planner. The wait for input begins without this check, because it changes no file.
+//! The port is read and written through its raw descriptor. The servo thread blocks all signals, and no wait here
+//! unblocks one, so no signal handler of a planner runs on this thread. No read or write allocates memory or waits past
+//! its deadline. Every read, write and flush of an open port first checks the descriptor: if another part of the
+//! program has closed it, its number may now belong to a file of the planner. The wait for input begins without this
+//! check, because it changes no file.
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
 mod input;
@@ -23,8 +24,8 @@ use std::time::Duration;
 pub struct Port {
     descriptor: Descriptor,
     input: Input,
-    /// Whether the next read must not wait for another event: the last read may have left bytes, or the port has hung
-    /// up.
+    /// Whether there may be something to read: an event has arrived whose bytes may not all be read yet, or the port
+    /// has hung up. [`Input`] returns an event only once, so a wait would not end for bytes that are left.
     unread: bool,
     hung_up: bool,
     path: PathBuf,

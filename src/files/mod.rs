@@ -24,7 +24,7 @@ use std::io::{Error, ErrorKind};
 /// read-only. The texts of other errors already show what to change, for example that the disk is full.
 pub fn write_remedy(error: &Error) -> &'static str {
     match error.kind() {
-        ErrorKind::PermissionDenied => ". This user needs permission to write the file and its folder",
+        ErrorKind::PermissionDenied => ". Give this user permission to write the file and its folder",
         ErrorKind::ReadOnlyFilesystem => ". Make the file system writable, or choose a folder on another one",
         _ => "",
     }

@@ -9,7 +9,8 @@ use std::iter;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 
-/// Number of temporary names that are tried. Two names of 64 random bits are never equal by accident.
+/// Number of temporary names that are tried. Names of 64 random bits are not equal by accident, so a second attempt is
+/// needed only if somebody creates files with such names on purpose.
 const ATTEMPTS: usize = 16;
 
 /// The bits of a mode that a new file inherits. Set-user-ID, set-group-ID and sticky are not inherited.

@@ -62,8 +62,8 @@ pub(super) fn start(
     accept(missing, real_time)?;
     let first = now() + HEAD_START;
     for _ in &numbers {
-        // A thread that has died leaves its message in the channel. The channel has room for all messages, so `send`
-        // never waits.
+        // A thread that has died does not take its message, which then stays in the channel. The channel has room for
+        // all messages, so `send` never waits.
         let _ = begin.send(first);
     }
     Ok(state)

@@ -9,22 +9,22 @@ use std::mem::MaybeUninit;
 /// The writer's end of a ring.
 pub struct Producer<T> {
     ring: SharedPages<Ring<T>>,
-    /// The value of the ring's `left`. Only this end changes it.
-    left: usize,
+    /// The value of the ring's counter `put`. Only this end changes this counter.
+    put: usize,
 }
 
 /// The reader's end of a ring.
 pub struct Consumer<T> {
     ring: SharedPages<Ring<T>>,
-    /// The value of the ring's `taken`. Only this end changes it.
+    /// The value of the ring's counter `taken`. Only this end changes this counter.
     taken: usize,
 }
 
-/// `left` counts the values that the writer has put into the ring, and `taken` counts those that the reader has taken.
+/// `put` counts the values that the writer has put into the ring, and `taken` counts those that the reader has taken.
 /// Both counters start again at 0 when they reach twice the number of places, so that a full ring differs from an empty
-/// one. The places from `taken` to `left` hold values.
+/// one. The places from `taken` to `put` hold values.
 struct Ring<T> {
-    left: Line<AtomicUsize>,
+    put: Line<AtomicUsize>,
     taken: Line<AtomicUsize>,
     places: Pages<[UnsafeCell<MaybeUninit<T>>]>,
 }
@@ -33,19 +33,19 @@ struct Ring<T> {
 #[repr(align(128))]
 struct Line<T>(T);
 
-// SAFETY: only the writer accesses a place until `left` has passed it. From then on, only the reader accesses the
+// SAFETY: only the writer accesses a place until `put` has passed it. From then on, only the reader accesses the
 // place until `taken` has passed it.
 unsafe impl<T: Send> Sync for Ring<T> {}
 
 /// Returns both ends of a ring with room for `capacity` values, or for one value if `capacity` is 0.
 pub fn ring<T>(capacity: usize) -> (Producer<T>, Consumer<T>) {
     let ring = Ring {
-        left: Line(AtomicUsize::new(0)),
+        put: Line(AtomicUsize::new(0)),
         taken: Line(AtomicUsize::new(0)),
         places: Pages::from_fn(capacity.max(1), |_| UnsafeCell::new(MaybeUninit::uninit())),
     };
     let ring = SharedPages::from(Pages::new(ring));
-    (Producer { ring: ring.clone(), left: 0 }, Consumer { ring, taken: 0 })
+    (Producer { ring: ring.clone(), put: 0 }, Consumer { ring, taken: 0 })
 }
 
 impl<T> Ring<T> {
@@ -59,8 +59,8 @@ impl<T> Ring<T> {
     }
 
     /// The number of values between two counters.
-    fn count(&self, taken: usize, left: usize) -> usize {
-        if left >= taken { left - taken } else { left + 2 * self.places.len() - taken }
+    fn count(&self, taken: usize, put: usize) -> usize {
+        if put >= taken { put - taken } else { put + 2 * self.places.len() - taken }
     }
 }
 
@@ -70,29 +70,29 @@ impl<T> Producer<T> {
     /// # Errors
     /// Returns the value itself if the ring is full.
     pub fn push(&mut self, value: T) -> Result<(), T> {
-        let (ring, left) = (&*self.ring, self.left);
-        if ring.count(ring.taken.0.load(Ordering::Acquire), left) == ring.places.len() {
+        let (ring, put) = (&*self.ring, self.put);
+        if ring.count(ring.taken.0.load(Ordering::Acquire), put) == ring.places.len() {
             return Err(value);
         }
-        // SAFETY: the reader has taken the previous value of this place, and does not access it before `left` has
+        // SAFETY: the reader has taken the previous value of this place, and does not access it before `put` has
         // passed it.
-        ring.place(left).with_mut(|place| unsafe {
+        ring.place(put).with_mut(|place| unsafe {
             (*place).write(value);
         });
-        self.left = ring.after(left);
-        ring.left.0.store(self.left, Ordering::Release);
+        self.put = ring.after(put);
+        ring.put.0.store(self.put, Ordering::Release);
         Ok(())
     }
 
     /// Whether the reader has taken every value.
     pub fn is_empty(&self) -> bool {
-        self.left == self.ring.taken.0.load(Ordering::Acquire)
+        self.put == self.ring.taken.0.load(Ordering::Acquire)
     }
 
     /// Whether the next push succeeds.
     pub fn has_room(&self) -> bool {
         let ring = &*self.ring;
-        ring.count(ring.taken.0.load(Ordering::Acquire), self.left) < ring.places.len()
+        ring.count(ring.taken.0.load(Ordering::Acquire), self.put) < ring.places.len()
     }
 
     /// Adds the ring's pages to `memory`.
@@ -106,7 +106,7 @@ impl<T> Consumer<T> {
     /// Takes the oldest value. Returns `None` if the ring is empty.
     pub fn pop(&mut self) -> Option<T> {
         let (ring, taken) = (&*self.ring, self.taken);
-        if taken == ring.left.0.load(Ordering::Acquire) {
+        if taken == ring.put.0.load(Ordering::Acquire) {
             return None;
         }
         // SAFETY: the writer has put a value here, and does not access the place again before `taken` has passed it.
@@ -118,7 +118,7 @@ impl<T> Consumer<T> {
 
     /// Whether the ring is empty.
     pub fn is_empty(&self) -> bool {
-        self.taken == self.ring.left.0.load(Ordering::Acquire)
+        self.taken == self.ring.put.0.load(Ordering::Acquire)
     }
 
     /// Adds the ring's pages to `memory`.
@@ -136,8 +136,8 @@ impl<T> Consumer<T> {
 impl<T> Drop for Ring<T> {
     fn drop(&mut self) {
         // Both ends are gone, so no thread changes the counters any more.
-        let (mut taken, left) = (self.taken.0.load(Ordering::Relaxed), self.left.0.load(Ordering::Relaxed));
-        while taken != left {
+        let (mut taken, put) = (self.taken.0.load(Ordering::Relaxed), self.put.0.load(Ordering::Relaxed));
+        while taken != put {
             // SAFETY: both ends are gone. The writer put this value here, and the reader did not take it.
             self.place(taken).with_mut(|place| unsafe { (*place).assume_init_drop() });
             taken = self.after(taken);

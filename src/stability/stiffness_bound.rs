@@ -74,11 +74,11 @@ impl Search {
     /// controller's model as `variant` says. A sample is stable if every motion decays to 1/e within 10 s. Every sample
     /// is stable at the bound, except those that are unstable with the softest spring too.
     ///
-    /// The samples are poses within the joint limits, with hard and soft fingers, stiffnesses with random axes and
-    /// eigenvalues from 1 N/cm to the bound, either [`Law`](crate::control::Law) of the spring, and loads that deflect
-    /// the tip by up to 2 mm. If walls of 30 to 1000 N/cm supply the loads, the contact can also be a frictionless
-    /// point. The relative damping is 1, or the smallest or the largest admissible one. As in the servo, Kx is scaled
-    /// down in poses in which the tendons support less.
+    /// The samples are poses within the joint limits, with the contact types "hard finger" and "soft finger",
+    /// stiffnesses with random axes and eigenvalues from 1 N/cm to the bound, either [`Law`](crate::control::Law) of
+    /// the spring, and loads that deflect the tip by up to 2 mm. If walls of 30 to 1000 N/cm supply the loads, the
+    /// contact can also be a frictionless point. The relative damping is 1, or the smallest or the largest admissible
+    /// one. As in the servo, Kx is scaled down in poses in which the tendons support less.
     ///
     /// # Errors
     /// The error names one of these keys:

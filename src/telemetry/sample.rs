@@ -36,7 +36,8 @@ pub struct Sample {
     pub tip_force: [f64; 3],
     /// The same force in the palm's frame.
     pub tip_force_in_palm: [f64; 3],
-    /// Kx of the set point, row by row, in the finger's frame, as it was sent.
+    /// Kx of the set point in this cycle, row by row, in the finger's frame, before it is scaled down to what the pose
+    /// supports.
     pub kx: Option<[[f64; 3]; 3]>,
     /// Stiffness of the tip in the present pose, in the finger's frame, as planners get it. It is zero if the finger
     /// does not follow a set point.

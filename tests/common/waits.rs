@@ -109,10 +109,10 @@ impl Waits {
         let worst = self.worst(span);
         let parts: Vec<_> = worst.iter().map(|(part, time)| format!("{part} {}", milliseconds(*time))).collect();
         format!(
-            "in {:.1} s the machine kept threads from running for at most {} within {} ({})",
+            "in the worst {} of the {:.1} s that were measured, threads waited for a core for {} in total ({})",
+            milliseconds(span),
             self.lasted.as_secs_f64(),
             milliseconds(worst.values().sum()),
-            milliseconds(span),
             parts.join(", ")
         )
     }

@@ -38,8 +38,8 @@ fn alone() -> Option<MutexGuard<'static, ()>> {
     usable.then(|| ONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the configuration of a hand with three fingers on one port, or with a finger on each port. `keys` are added
-/// to the table `[hand]`.
+/// Returns the configuration of a hand with three fingers on one port, or with a finger on each port. `keys` is
+/// added to the text of the configuration: first keys of the table `[hand]`, then whole tables.
 fn configuration(ports: &[PathBuf], keys: &str) -> Configuration {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("sun2xp.toml");
@@ -91,7 +91,7 @@ fn with_hand(emulated: Emulated, what: &str, work: impl Fn(&Machine, &Hand) -> R
     with_configured_hand(emulated, what, KEYS, work);
 }
 
-/// Like [`with_hand`]. `keys` begin in the table `[hand]`, and are followed by the tables of the fingers.
+/// Like [`with_hand`]. `keys` is that of [`configuration`].
 fn with_configured_hand(
     emulated: Emulated,
     what: &str,

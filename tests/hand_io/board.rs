@@ -97,7 +97,7 @@ fn an_exchange_that_fails_is_a_lost_reply_without_a_wait() {
 }
 
 #[test]
-fn what_cannot_be_read_is_never_a_number() {
+fn an_unusable_reading_sets_sensor_fault_and_keeps_the_last_counts() {
     for tension in [f64::NAN, f64::INFINITY, -41.0, 300.0] {
         let mut rig = Rig::ready();
         let before = rig.exchange([0; 4]).expect("a reply").reply.gauges;

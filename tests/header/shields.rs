@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Keywords of C and C++ in `src/capi/header/after.h`, the part of the header after the declarations. `_Generic` and
-/// `default` are not listed: they stand only in macros of the header, which are expanded after the planner's macros have
-/// been restored.
+/// `default` are not listed: they stand only in macros of the header, which are expanded after the planner's macros
+/// have been restored.
 const KEYWORDS_OF_AFTER: &[&str] = &[
     "char",
     "class",

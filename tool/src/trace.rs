@@ -20,7 +20,8 @@ use sun2xp::telemetry::{Description, Message, Sample, View};
 /// Progress is counted in thousandths of the file.
 const THOUSANDTHS: u64 = 1000;
 
-/// What a recording contains, in chronological order for each finger.
+/// An item of a recording. The cycles of a finger are in chronological order. An event may follow later cycles of its
+/// finger.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// A finger of the recorded hand. The fingers precede all other items.
@@ -54,7 +55,7 @@ pub struct Row {
 pub struct Mark {
     /// Time of the monotonic clock, ns.
     pub time: u64,
-    /// `None` for an event of the whole hand.
+    /// Number of the finger; `None` if no finger is concerned.
     pub finger: Option<i32>,
     pub cycle: Option<u64>,
     pub kind: MarkKind,

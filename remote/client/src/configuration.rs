@@ -102,7 +102,7 @@ impl RemoteConfiguration {
     }
 
     /// Checks the endpoint, `stale_ms`, and whether the configuration keys fit together. The error contains the
-    /// configuration key and the reason.
+    /// configuration key, which is empty for the whole table, and the reason.
     fn check(&self) -> Result<(), (&'static str, String)> {
         let (protocol, host) = self.endpoint.split_once('/').unwrap_or(("", &self.endpoint));
         let (host, port) = host.rsplit_once(':').unwrap_or((host, ""));
@@ -137,7 +137,7 @@ impl RemoteConfiguration {
         match (&self.tls, &self.client) {
             (Some(tls), given) => client_of(tls, given.as_ref()),
             (None, Some(client)) => Ok(client.clone()),
-            (None, None) => Err(wrong("remote.client is missing".into())),
+            (None, None) => Err(wrong("remote.client is missing: set it to a name for this client".into())),
         }
     }
 }

@@ -98,9 +98,9 @@ impl Outbox {
     /// since the previous State.
     pub fn received(&mut self, time: u64, owner: u64, continued: bool) {
         if let Ok(Ownership { number, since, .. }) = self.ownership {
-            // A State that is not later than the Answer may show an earlier owner. It may also be the first State of a
-            // server that was started again and then gave this epoch: `continued` is false then, but this epoch has
-            // not ended.
+            // A State that is not later than the Answer may show an earlier owner. It may also have been sent between a
+            // restart of the server and the Answer. `continued` is then false, although this epoch, which began after
+            // the restart, has not ended.
             let lost = if time > since { owner != number } else { since - time > RESTARTED };
             match (lost, continued) {
                 (false, _) => {}
@@ -129,9 +129,8 @@ impl Outbox {
             self.slots.iter_mut().for_each(|slot| slot.refuse(answer.number));
             if answer.number > self.reported {
                 self.refusal = Some(answer.text.clone());
-                // Every Target that was sent after the refused one repeated the refused values, so the server refuses
-                // that Target too. Its refusal is reported only if the Target also contained a later change that the
-                // slots have kept.
+                // The server also refuses the later Targets that repeat the refused values. Of these refusals, only
+                // those are reported whose Target also contained a later change that the slots have kept.
                 let others = self.slots.iter().filter_map(Slot::first_unconfirmed).min();
                 self.reported = others.map_or(self.sequence, |first| first - 1).max(answer.number);
             }
@@ -154,7 +153,8 @@ impl Outbox {
         self.stamp = stamp.or(self.stamp);
     }
 
-    /// Whether changes wait and may be sent. Changes of a group wait for each other.
+    /// Whether changes wait and may be sent. If the changes for one finger must wait, those for the other fingers wait
+    /// too, because they may belong to one group.
     fn has_changes(&self) -> bool {
         self.slots.iter().any(Slot::waits) && !self.slots.iter().any(Slot::is_blocked)
     }

@@ -80,8 +80,8 @@ impl Fingers {
         Ok((Some(LedPlace { pose, joints: place.into() }), part >= 1.0))
     }
 
-    /// Returns how far the lead admits a set point on the way from the finger to `end`, rad. 0 is at the finger, and 1 at
-    /// `end`.
+    /// Returns how far the lead admits a set point on the way from the finger to `end`, rad. 0 is at the finger, and 1
+    /// at `end`.
     pub(super) fn admitted(&self, number: i32, goal: &Goal, report: &FingerReport, end: &Vector3<f64>) -> f64 {
         let joints = report.cycle.joints;
         let jacobian = self.hand.jacobian(number, Some(joints.into()));

@@ -48,7 +48,7 @@ fn a_shaper_loses_the_fraction_that_it_should() {
 }
 
 #[test]
-fn a_shaper_delays_within_its_range_and_keeps_the_order_unless_told() {
+fn a_shaper_delays_within_its_range_and_keeps_the_order_unless_it_reorders() {
     for reorders in [false, true] {
         let mut shaper = Shaper::new(18);
         let (least, jitter) = (Duration::from_millis(10), Duration::from_millis(50));

@@ -90,8 +90,8 @@ impl Rig {
 
     /// Lets `failure` happen while a planner moves the hand. Observes the hand until every finger is in its end state,
     /// and repairs the line. After [`Failure::Stopped`], the next planner must get the hand, and the planner that
-    /// continues must not disturb it. After the other failures, the next call starts the next planner, which must get
-    /// the hand.
+    /// continues must not disturb it. After the other failures, the next call of `fail` starts the next planner,
+    /// which must get the hand.
     pub fn fail(&mut self, failure: Failure) -> Outcome {
         let planner = self.planner(Motion::Swing);
         self.observer.skip();

@@ -6,9 +6,9 @@
 //! so the filter attributes a disagreement that grows at rest to the offset. An error of the configuration is therefore
 //! learned, and a drift of a gauge is not.
 //!
-//! While a gauge drifts, the finger moves too, and for a short time the filter would explain a part of the drift by
-//! this motion. So samples are compared with what was known before, and what the filter learns from a doubtful block of
-//! samples is discarded.
+//! If the finger moves while a gauge drifts, the filter would explain a part of the drift by this motion for a short
+//! time. So samples are compared with what was known before the present block of samples, and what the filter learns
+//! from a doubtful block is discarded.
 
 use nalgebra::{SMatrix, SVector};
 

@@ -19,15 +19,14 @@ impl JointSpring {
         (self != Self::default()).then_some(self)
     }
 
-    /// Returns the stiffness of the tip, N/cm, that is taken as the equivalent of K_theta in the computation of the
-    /// range of the damping. This is the largest eigenvalue of K_theta divided by the square of `lever`, the length of
-    /// the last link, cm.
+    /// Converts K_theta to a stiffness of the tip, N/cm, from which the permitted range of the damping ratio is
+    /// computed. This is the largest eigenvalue of K_theta divided by the square of `lever`, the length of the last
+    /// link, cm.
     ///
-    /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. The
-    /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more stiffness than joint 2. When
-    /// the finger is folded, the levers and the inertia of joints 0 and 1 are small. Kx then gives these joints little
-    /// stiffness, but K_theta gives them as much as before. So the lever of joint 2, the shortest one in most poses, is
-    /// used for all joints.
+    /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. A
+    /// shorter lever makes the equivalent stiffer, and the range of the damping narrower. The lever of joint 2, which
+    /// is the shortest one in most poses, is used for all joints, because K_theta does not become softer where the
+    /// levers and the inertia of joints 0 and 1 are small, in a folded finger.
     pub fn equivalent(&self, lever: f64) -> f64 {
         self.k_theta.symmetric_eigenvalues().max() / (lever * lever)
     }

@@ -80,8 +80,9 @@ impl ServoEnd {
         }
     }
 
-    /// Returns the set point of the newest group that takes effect in this period, if one does. `now` returns the
-    /// number of the present period, which is later than `period` if the servo is late.
+    /// Returns the set point of the newest group that takes effect by `period`, the number of the period whose cycle
+    /// runs; none if no group does. `now` returns the number of the period by the clock, which is later than `period`
+    /// if the servo is late.
     pub fn new_group(&mut self, period: u64, now: impl Fn() -> u64) -> Option<SentSetPoint> {
         let mut newest = None;
         while let Some(next) = self.next_group.or_else(|| self.grouped.pop()) {

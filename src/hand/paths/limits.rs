@@ -68,8 +68,8 @@ impl Admission {
     pub(super) fn too_fast(&self, excess: &Excess, per_pose: usize) -> PathError {
         let &Excess { factor, piece, joint, quantity: index, value } = excess;
         let ((quantity, unit), limit) = (QUANTITIES[index], self.motion_limits.0[index]);
-        // The error text shows the factor with two decimals. The factor is rounded up, so that a path whose times are
-        // multiplied by it is admitted.
+        // The error text shows the factor with two decimals. The factor is rounded up, so that a path that begins
+        // at rest is admitted if its times are multiplied by it.
         let factor = (factor * 100.0).ceil() / 100.0;
         PathError::TooFast { finger: self.finger, pose: piece / per_pose, joint, quantity, unit, value, limit, factor }
     }

@@ -17,7 +17,7 @@ const HEIGHT: f64 = 190.0;
 
 /// A recording that is longer than this, s, is drawn only around its largest step.
 const LONG: f64 = 5.0;
-/// A recording longer than [`LONG`] is drawn from the first to the second of these times, s after its largest step.
+/// Times at which the drawing of a recording longer than [`LONG`] begins and ends, s. The largest step is at 0.
 const AROUND: (f64, f64) = (-0.2, 1.3);
 
 /// A step of the set point is at least this large, degrees.

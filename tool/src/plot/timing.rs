@@ -76,8 +76,8 @@ impl Plot for Timing {
     }
 }
 
-/// A histogram of the times that `of` selects, one for each cycle. Both axes are logarithmic, so that single late
-/// cycles are visible.
+/// A histogram of the times that `of` selects. Each cycle has one such time. Both axes are logarithmic, so that single
+/// late cycles are visible.
 fn histogram(name: &str, fingers: &[(usize, &Times)], of: fn(&(f64, f32, f32)) -> f32, period: f64) -> Panel {
     let sorted = fingers.iter().map(|&(index, times)| {
         let mut values: Vec<f32> = times.0.iter().map(of).filter(|time| time.is_finite()).collect();

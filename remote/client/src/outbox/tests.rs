@@ -55,7 +55,7 @@ fn without_ownership_nothing_is_sent() {
     assert_eq!((outbox.due(), outbox.next(u64::MAX), outbox.ownership()), (None, None, Err(Loss::Ended)));
 }
 
-/// During an emergency stop no Targets are sent. Set points that are put into the outbox meanwhile wait.
+/// During an emergency stop no Targets are sent. Set points that are put into the outbox during this time wait in it.
 #[test]
 fn targets_can_be_held_back() {
     let mut outbox = owner();
@@ -277,7 +277,7 @@ fn a_new_epoch_begins_without_old_set_points() {
 }
 
 #[test]
-fn time_stamps_are_shared_and_do_not_go_back() {
+fn a_given_time_stamp_is_used_and_stamps_do_not_go_back() {
     let mut outbox = owner();
     outbox.put(joints(0.5), Some(3 * MS));
     assert_eq!(outbox.next(4 * MS).expect("a Target").sent, 3 * MS);

@@ -225,7 +225,10 @@ fn a_request_that_reaches_nobody_is_repeated() {
     server.hand().lock().unanswered = usize::MAX;
     let error = hand.recover(None).expect_err("nobody answers");
     assert_eq!(error.kind(), RemoteErrorKind::NotConnected);
-    assert!(error.to_string().contains("the request `recover` has no answer. Check the line and the server"), "{error}");
+    assert!(
+        error.to_string().contains("the request `recover` has no answer. Check the line and the server"),
+        "{error}"
+    );
 }
 
 #[test]

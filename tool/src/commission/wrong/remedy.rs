@@ -144,8 +144,8 @@ impl Wrong {
             }
             Self::PoseRefused(_) => {
                 "If a jig held the finger, the finger probably trembled because the signals of its gauges arrive \
-                 too late: zero the finger at its stops instead. For that, leave with q and set three keys of this finger in the \
-                 configuration file: zeroing.method = \"stops\", and the angles of its stops in \
+                 too late: zero the finger at its stops instead. For that, leave with q and set three keys of this \
+                 finger in the configuration file: zeroing.method = \"stops\", and the angles of its stops in \
                  zeroing.lower_stop_degrees and zeroing.upper_stop_degrees. Then start the tool again: it reads the \
                  file only when it starts"
                     .into()

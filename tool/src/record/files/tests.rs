@@ -94,7 +94,7 @@ fn a_file_that_cannot_be_written_or_deleted_is_named_with_the_cause_and_the_reme
     let failure = OpenFile::begin(path.clone(), full, &description(), 0).err().expect("a full disk").to_string();
     assert!(failure.starts_with("cannot write ") && failure.contains("No space left on device"), "{failure}");
     let denied = io::Error::from(ErrorKind::PermissionDenied);
-    let remedy = ": permission denied. This user needs permission to write the file and its folder";
+    let remedy = ": permission denied. Give this user permission to write the file and its folder";
     let failure = unwritten(&path, &denied).to_string();
     assert!(failure.starts_with("cannot write ") && failure.ends_with(remedy), "{failure}");
     let failure = unwritten(&path, &io::Error::from(ErrorKind::ReadOnlyFilesystem)).to_string();
