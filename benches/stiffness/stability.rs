@@ -30,7 +30,7 @@ pub struct Stability {
     pub largest: f64,
 }
 
-/// Number of samples in a row of this file, divided by the number of poses in the other rows of the table.
+/// A row of the table that this file measures has this many samples for each pose of the other rows.
 const DENSITY: usize = 20;
 
 /// Returns samples in random poses within `limits`. No spring is stiffer than the bound on Kx, and the loads are small.

@@ -72,8 +72,8 @@ pub struct sun2xp_path_pose {
 ///   ENOMEM   there is not enough memory for the computation
 ///   ENODEV   no such hand
 ///   EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
-///            finger; a time is more than 3600 s, or less than 1 ms later than the time before it (0 for the
-///            first pose); joint angles and tip positions are mixed; an entry is NaN or infinite
+///            finger; a time is more than 3600 s, or less than 1 ms later than that of the pose before it
+///            (0 for the first pose); joint angles and tip positions are mixed; an entry is NaN or infinite
 ///   EDOM     a Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
 ///            stiff, or the path is too fast; sun2xp_error_text names the pose. If the path is too

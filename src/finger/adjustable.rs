@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 pub struct Adjustable {
     /// Number of the controller. The records in the finger's black box name their controller by this number.
     pub number: u32,
-    /// The controller, which contains the blocks of Figure 9 of COINS TR 90-48.
+    /// The controller (see [`crate::control`]).
     pub controller: Controller,
     /// What the servo does with the set points of its planner.
     pub motion: MotionSettings,

@@ -34,7 +34,7 @@ fn step(step: Step, world: &Shared, person: &mut Helper, belief: &ConfiguredFing
 
 /// The zero of the gauge is at -18 counts, and the converter delivers no count below 0.
 #[test]
-fn a_gauge_below_the_range_of_its_converter_is_named_and_left_out_of_the_line() {
+fn a_gauge_below_the_range_of_its_converter_is_named_and_its_reading_is_left_out() {
     let (world, belief) = world(|truth| truth.gauge.zero[1] = -18.0);
     let (outcome, _) = step(Step::Gauges, &world, &mut Helper::new(&world), &belief);
     let named = outcome.wrong.iter().find(|wrong| !wrong.compensated()).expect("wrong");
@@ -143,7 +143,7 @@ fn a_gauge_without_a_weight_is_not_reported_as_dead() {
     assert_eq!(open, [Wrong::NotWeighed(3)]);
 }
 
-/// The weights that do not hang must not widen the tolerance of the line.
+/// The tolerance of the straight line through the readings of a gauge must follow from the weights that hang.
 #[test]
 fn a_bent_gauge_is_named_although_the_heaviest_weight_does_not_hang() {
     let (world, belief) = world(|_| ());
