@@ -542,7 +542,8 @@ typedef struct Sun2XpNull Sun2XpNull;
     (1 ? _Generic(Array, Sun2XpVoid *: Array, default: (Sun2XpVoid *)0) : (Sun2XpNull *)0)
 #define SUN2XP_NULL_NUMBER(Array) \
     (1 ? (Sun2XpVoid *)(Sun2XpLong)_Generic(Array, Sun2XpInt: Array, Sun2XpLong: Array, default: 0) : (Sun2XpNull *)0)
-/* An array of variable length matches both Element (*)[3] and Element (*)[9], so one _Generic must not list both. */
+/* A pointer to an array of variable length matches both Element (*)[3] and Element (*)[9], so one _Generic must not
+   list both. */
 #define SUN2XP_ROWS_OF_9(Element) \
     Element (*)[9]: (Element *)0, Element##C (*)[9]: (Element##C *)0, \
     Element##V (*)[9]: (Element##V *)0, Element##CV (*)[9]: (Element##CV *)0

@@ -263,8 +263,8 @@ typedef struct sun2xp_hand sun2xp_hand;
                                                have not taken effect yet. Call again later. If a finger is limp
                                                (SUN2XP_STATE_LIMP), zero it first. Three other calls get this number
                                                too: OpenHand while its hand is open, sun2xp_set_log in the log
-                                               callback, and a call for a hand on another machine that another client
-                                               commands. */
+                                               callback, and a call for a hand on another machine if another client
+                                               commands this hand. */
 #define SUN2XP_ERROR_TOO_MANY 6             /* Too many hands or reflexes. */
 #define SUN2XP_ERROR_ARGUMENT 7             /* An argument makes no sense: null, NaN, no such finger, a struct that
                                                is too small. */
@@ -358,10 +358,11 @@ typedef void (*sun2xp_log)(int severity, const char *text, void *user);
    user       third argument of each call of the function
 
  If there is a callback, the library calls it with each message, and prints nothing, except while
- sun2xp_set_log replaces the callback. The library calls it in a thread whose call is refused (the first
- refusal of each kind, unless hand.print_refusals is false), and in threads of the library that are not
- real-time, for example in the one that opens a hand. Several threads may call the callback at the same
- time. The callback must make no calls of the library, and must return. The text is valid only until the
+ sun2xp_set_log replaces the callback. The library calls it in a thread whose call is refused, and in
+ threads of the library that are not real-time, for example in the one that opens a hand. Of the refusals,
+ only the first of each kind in a process is a message. If hand.print_refusals is false for a hand, the
+ refusals of calls for this hand are no messages. Several threads may call the callback at the same time.
+ The callback must make no calls of the library, and must return. The text is valid only until the
  callback returns. There is one callback for all hands of the process.
 
  When sun2xp_set_log has returned, the previous callback is not running and is not called again. A message
@@ -567,8 +568,9 @@ struct sun2xp_io_sample {
     double tensions[4];                     /* Tensions at the gauges, N. */
     int encoders[4];                        /* Counts of the motor encoders. */
     unsigned int faults;                    /* Sum of the SUN2XP_IO_... bits of all present faults. Each bit stops
-                                               the finger with a fault, except SUN2XP_IO_ZERO_LOST if all samples
-                                               since start was called at opening have had it. */
+                                               the finger with a fault, with one exception: SUN2XP_IO_ZERO_LOST does
+                                               not stop the finger if every sample since the call of start at opening
+                                               has had this bit. */
 };
 
 /* The command of one exchange. The library sets all members. */
@@ -953,8 +955,8 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
  sun2xp_send_joint_stiffness - turn the joints of a finger into springs
 
    finger      1 to 3
-   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [row][column] is
-               the torque of joint row for a deflection of joint column from its set point, N cm/rad
+   stiffness   stiffness[9] or &stiffness[0][0] of stiffness[3][3], row by row: entry [i][j] is the
+               torque of joint i for a deflection of joint j from its set point, N cm/rad
 
  The torque of the joints is stiffness (d - p), with the desired angles d and the measured angles p of
  joints 0, 1 and 2. The stiffness takes effect like Kx, without a jump in torque: 95 % of the change has
@@ -963,8 +965,8 @@ int sun2xp_send_damping(sun2xp_hand *hand, int finger, double ratio);
  of sun2xp_send_joint_torque stays. The stiffness must be symmetric and must have no negative eigenvalue,
  as for sun2xp_send_stiffness. It may be zero.
 
- The largest eigenvalue may be at most the bound of Kx times l2 l2, where l2 is the length of the
- last link: by default 96 N cm/rad if the servo rate (hand.rate) is 1000 Hz or more, and 80 N cm/rad
+ The largest eigenvalue may be at most the bound of Kx times the square of the length of the last
+ link: by default 96 N cm/rad if the servo rate (hand.rate) is 1000 Hz or more, and 80 N cm/rad
  otherwise. This is the stiffness that a Kx with all eigenvalues at its bound gives joint 2 in every pose.
 
  Returns 0, or a negative number with
@@ -1022,11 +1024,11 @@ int sun2xp_send_joint_torque(sun2xp_hand *hand, int finger, const double *torque
 
 /* ---- GROUPS AND WAITING ------------------------------------------------------------------------------------------ */
 
-#define SUN2XP_WAIT_ARRIVED 1               /* Since the set point sent last took effect, there was a cycle in which
-                                               every joint was within finger.events.arrived_degrees of this set
-                                               point. */
-#define SUN2XP_WAIT_SETTLED 2               /* Since the set point sent last took effect, there was a time of
-                                               finger.events.settled_ms in which no joint moved by more than
+#define SUN2XP_WAIT_ARRIVED 1               /* Since the set point that was sent last took effect, there was a cycle
+                                               in which every joint was within finger.events.arrived_degrees of this
+                                               set point. */
+#define SUN2XP_WAIT_SETTLED 2               /* Since the set point that was sent last took effect, there was a time
+                                               of finger.events.settled_ms in which no joint moved by more than
                                                finger.events.settled_degrees. */
 
 /* Command to one finger of a group (sun2xp_send_group). */
@@ -1100,7 +1102,7 @@ int sun2xp_send_group(sun2xp_hand *hand, int count, const struct sun2xp_set_poin
  an object blocks settles without arriving. If the set point is a position of the tip, the finger arrives
  at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
  the condition must hold for the set point of the reflex. This is also so if the finger ignored a later set
- point because the reflex inhibits set points for some time. The wait then returns only after this time. If
+ point because the reflex inhibits set points for some time. In this case the wait returns only after that time. If
  the set point that was sent last has expired, the condition must be true for the pose in which the finger
  has stayed since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
  SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close
@@ -1177,8 +1179,8 @@ struct sun2xp_path_pose {
    ENOMEM   there is not enough memory for the computation
    ENODEV   no such hand
    EINVAL   size is too small; count is not 1 to 128; seconds is NaN, negative or more than 3600; no such
-            finger; a time is more than 3600 s, or less than 1 ms later than the time before it, which is 0
-            for the first pose; joint angles and tip positions are mixed; an entry is NaN or infinite
+            finger; a time is more than 3600 s, or less than 1 ms later than that of the pose before it
+            (0 for the first pose); joint angles and tip positions are mixed; an entry is NaN or infinite
    EDOM     a Kx is not symmetric, or has a negative eigenvalue
    ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is too
             stiff, or the path is too fast; sun2xp_error_text names the pose. If the path is too
@@ -1385,7 +1387,7 @@ int sun2xp_palm_pose(sun2xp_hand *hand, int finger, struct sun2xp_palm_pose *pos
    EIO      a finger is faulted; the other fingers have the new gravity, and this finger takes it when
             it recovers
 
- Threads: any. Never waits for a servo. Takes some us; a simulated finger may keep the call waiting while
+ Threads: any. Never waits for a servo. Takes a few us; a simulated finger may keep the call waiting while
  it computes.
 
  Example, a palm whose x axis points down:
@@ -1644,8 +1646,8 @@ int sun2xp_adjust(sun2xp_hand *hand, int finger, const char *keys);
  cover the cycles since sun2xp_open or the last sun2xp_reset_timing. The member torque_scale applies to
  all joints alike, so the torque keeps its direction. The member stiffness_scale is below 1 in poses in
  which the tendons cannot provide the whole Kx, for example near the straight pose. A joint beyond its
- limit can reduce it too, because the spring that pushes the joint back needs a part of what the tendons
- provide. sun2xp_tip gives the stiffness that results.
+ limit can also reduce stiffness_scale, because the spring that pushes the joint back needs a part of what
+ the tendons provide. sun2xp_tip gives the stiffness that results.
  */
 struct sun2xp_status {
     size_t size;                            /* sizeof (struct sun2xp_status), set before the call. */
@@ -1659,9 +1661,9 @@ struct sun2xp_status {
     double torque_scale;                    /* Fraction of the desired joint torque that the tension limits permitted
                                                in the last cycle, 0 to 1. */
     unsigned long cycles;                   /* Cycles since sun2xp_open. */
-    unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
-                                               not over or the servo thread did not run, up to now. One late cycle
-                                               may skip many. */
+    unsigned long skipped_periods;          /* Whole periods, up to now, in which no cycle began because the previous
+                                               cycle was not over or the servo thread did not run. One late cycle may
+                                               skip many. */
     unsigned long lost_replies;             /* Cycles without a valid reply in time. */
     unsigned long damaged_replies;          /* Pieces of bad data on the finger's port: damaged frames, truncated
                                                frames and noise. Whole frames that no finger expected count in
@@ -1734,8 +1736,8 @@ struct sun2xp_timing {
     unsigned long cycles;                   /* All cycles of the finger. This member and all later ones do not depend
                                                on the stage. */
     unsigned long overruns;                 /* Cycles that were not over when the next one was due. */
-    unsigned long skipped_periods;          /* Whole periods in which no cycle began because the previous cycle was
-                                               not over or the servo thread did not run, up to the last cycle. */
+    unsigned long skipped_periods;          /* Whole periods, up to the last cycle, in which no cycle began because
+                                               the previous cycle was not over or the servo thread did not run. */
     unsigned long lost_replies;             /* Cycles without a valid reply in time. */
     unsigned long late_replies;             /* Replies that arrived after the end of their cycle. */
     unsigned long damaged_replies;          /* Pieces of bad data on the finger's port: damaged frames, truncated
@@ -2008,10 +2010,10 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
  Slackens the tendons and reads the gauges. Finds the zero of the encoders by finger.zeroing.method:
 
    "pose"   The finger must be in the pose finger.zeroing.pose_degrees, and must stand still there from
-            the start of the call until its encoders have been read. This takes 0.3 s for a finger
-            that is a spring, whose encoders are read before its tendons are slackened, and some
-            seconds for a limp finger. A jig or a person must hold a limp finger. A finger that moves
-            is refused, and so is a limp finger that nothing holds.
+            the start of the call until its encoders have been read. For a finger that is a spring,
+            this takes 0.3 s, because its encoders are read before its tendons are slackened. For a
+            limp finger, it takes some seconds. A jig or a person must hold a limp finger. A finger
+            that moves is refused, and so is a limp finger that nothing holds.
    "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
    "kept"   The configured zero stays, if the board reports that its counts are still valid.
 
@@ -2034,7 +2036,7 @@ int sun2xp_recover(sun2xp_hand *hand, int finger);
               they are in force until sun2xp_close and not stored
    EIO        the finger is faulted. If it faulted after its zeros were found, they are in force. The next
               sun2xp_identify that succeeds for this finger stores them. If a sun2xp_zero succeeds before
-              that, it stores the zeros that it has found instead
+              that, its own zeros replace them and are stored
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is dead, a
               joint meets no stop or meets it too early ...). sun2xp_error_text gives the remedy. The finger
@@ -2280,8 +2282,7 @@ int sun2xp_event_descriptor(sun2xp_hand *hand);
  After a reaction, the finger ignores set points of the planner for the time in the member inhibition. For
  SUN2XP_THEN_GRIP, the member position is the direction in the finger's frame in which the tip presses
  harder; 0, 0, 0 stands for the direction in which its spring presses. If the component of the spring's
- force in the given direction, or in the one that 0, 0, 0 stands for, is below 0.05 N, the reaction changes
- no set point, but a path still ends.
+ force in this direction is below 0.05 N, the reaction changes no set point, but a path still ends.
  */
 struct sun2xp_reflex {
     size_t size;                            /* sizeof (struct sun2xp_reflex), set before the call. */

@@ -114,7 +114,8 @@ fn the_mean_of_unequal_configured_gains_is_kept() {
     assert!((gains[0] / gains[1] - 1.0).abs() < 0.01, "{found:?}");
 }
 
-/// If the motors are the reference, gauges with a wrong gain lead to the same encoder zeros as gauges with the right gain.
+/// If the motors are the reference, gauges with a wrong gain lead to the same encoder zeros as gauges with the right
+/// gain.
 #[test]
 fn the_encoder_zeros_do_not_depend_on_the_gain_of_gauges_that_the_motors_correct() {
     let zeros = |gauge: f64, reference: GaugeReference| {

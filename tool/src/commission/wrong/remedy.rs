@@ -32,6 +32,13 @@ impl Wrong {
                  of motors, encoders and gauges are right"
             ),
             Self::GaugesExchanged(order) => format!("Swap the gauge cables: {}", moves(order)),
+            _ => self.remedy_of_motors(),
+        }
+    }
+
+    /// The remedies of motors and encoders.
+    fn remedy_of_motors(&self) -> String {
+        match self {
             Self::EncoderReversed(encoder) => {
                 format!(
                     "Nothing to do: encoder.sign compensates it. Or swap the channels A and B of encoder {encoder} and \
