@@ -182,7 +182,8 @@ fn status_bits() {
         ("torque clipped", Status::TORQUE_CLIPPED),
         ("damaged input", Status::DAMAGED_INPUT),
     ];
-    let rows = table("| bit | name |");
+    let mut rows = table("| bit | name |");
+    assert_eq!(rows.pop().expect("the reserved bits")[0], format!("{}-15", named.len()));
     assert_eq!(rows.len(), named.len());
     for (row, (name, bit)) in rows.iter().zip(named) {
         assert_eq!(row[1], name);
