@@ -86,7 +86,8 @@ mod tests {
         let text = |kind: ErrorKind| unwritable(Path::new("hand.toml"), &io::Error::from(kind)).to_string();
         let (denied, full) = (text(ErrorKind::PermissionDenied), text(ErrorKind::StorageFull));
         assert!(
-            denied.starts_with("cannot write hand.toml: permission denied. This user needs permission"),
+            denied
+                .starts_with("cannot write hand.toml: permission denied. Give this user permission to write the file"),
             "{denied}"
         );
         assert_eq!(full, "cannot write hand.toml: no storage space");
