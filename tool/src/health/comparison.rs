@@ -133,7 +133,7 @@ fn noise_and_heat(
     );
 }
 
-/// Estimates the heat of each winding after a long time at rest, relative to the heat that the motor bears
+/// Estimates the heat of each winding after a long time at rest, relative to the heat that the motor withstands
 /// continuously. The heat is proportional to the square of the torque. The rise of the temperature is proportional to
 /// the heat.
 fn heat(vitals: &Vitals, finger: &ConfiguredFinger) -> Option<[f64; 4]> {
