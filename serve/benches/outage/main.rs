@@ -46,7 +46,7 @@ struct Arguments {
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     repetitions: u32,
     /// Only this failure, for example Unplugged.
-    #[arg(long, value_parser = failure_of_name)]
+    #[arg(long)]
     failure: Option<Failure>,
     /// Cargo passes this argument.
     #[arg(long, hide = true)]
@@ -77,11 +77,6 @@ fn main() -> ExitCode {
         println!("{failure:?}: before {before:?}, after {after:?} ({} s after the last failure)", freed.as_secs());
     }
     if measured.iter().all(Measured::is_good) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
-}
-
-fn failure_of_name(name: &str) -> Result<Failure, String> {
-    let named = |failure: &Failure| format!("{failure:?}") == name;
-    Failure::ALL.into_iter().find(named).ok_or_else(|| format!("the failures are {:?}", Failure::ALL))
 }
 
 /// The repetitions of one failure, and what its server used before and after them.

@@ -22,7 +22,8 @@ const FOLLOWS: Duration = Duration::from_secs(15);
 pub const CATCH_MS: u32 = 100;
 
 /// What fails.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[value(rename_all = "PascalCase")]
 pub enum Failure {
     /// The planner is killed.
     Killed,
