@@ -71,9 +71,9 @@ pub enum Obstacle {
     NotKept,
     /// The finger moved although it had to stay in its pose.
     #[error(
-        "joint {joint} moved by {degrees:.2} degrees while the pose was read. Zero it again in \
-         zeroing.pose_degrees: let nothing push the finger, and if it moves to a set point, wait until it arrives. Or \
-         zero it at its stops (zeroing.method = \"stops\", zeroing.lower_stop_degrees, zeroing.upper_stop_degrees)"
+        "joint {joint} moved by {degrees:.2} degrees while the pose was read. Zero the finger again \
+         in zeroing.pose_degrees: let nothing push it, and if it moves to a set point, wait until it arrives. Or zero \
+         it at its stops (zeroing.method = \"stops\", zeroing.lower_stop_degrees, zeroing.upper_stop_degrees)"
     )]
     Moved {
         /// The joint, 0 to 2.

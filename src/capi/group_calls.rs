@@ -123,11 +123,11 @@ pub unsafe extern "C" fn sun2xp_send_group(
 /// an object blocks settles without arriving. If the set point is a position of the tip, the finger arrives
 /// at the joint angles that were computed for it. If a reflex has replaced the set point that was sent last,
 /// the condition must hold for the set point of the reflex. This is also so if the finger ignored a later set
-/// point because the reflex inhibits set points for some time. In this case the wait returns only after that time. If
-/// the set point that was sent last has expired, the condition must be true for the pose in which the finger
-/// has stayed since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the event
-/// SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait. sun2xp_close
-/// works too, and then the wait is refused.
+/// point because the reflex inhibits set points for some time. In this case the wait returns only after that
+/// time. If the set point that was sent last has expired, the condition must be true for the pose in which the
+/// finger has stayed since then. The event SUN2XP_EVENT_REFLEX_FIRED reports the reaction of a reflex, and the
+/// event SUN2XP_EVENT_EXPIRED reports that a set point has expired. Other calls work during the wait.
+/// sun2xp_close works too, and then the wait is refused.
 ///
 /// Returns 0, or a negative number with
 ///   EPERM    forked child

@@ -178,7 +178,8 @@ mod tests {
 
     const FACTORS: [f64; 7] = [0.5, -0.3, 0.8, 0.1, -0.6, 0.9, 0.4];
 
-    /// The terms after `seconds` of a motion that excites all of them, and stands still every other second.
+    /// The terms after `seconds` of a motion that excites all of them. The motion stands still in every other second,
+    /// and jumps when it begins again.
     fn moving(seconds: f64) -> Terms {
         let moved = seconds.floor() / 2.0 + (seconds.fract() * (seconds as u32 % 2) as f64) / 2.0;
         Terms::from_fn(|term, _| 5.0 * (moved * (1.0 + 0.37 * term as f64)).sin())
